@@ -1,4 +1,4 @@
-// Chooses the renderer: by EGL, by OSMesa or in plain C++, the first of them that works.
+// Chooses the renderer: EGL, OSMesa or plain C++, the first one that works.
 #pragma once
 
 #include <memory>
@@ -37,12 +37,11 @@ struct MadeRenderers {
   std::vector<RendererFailure> failures;  // the renderers tried before, in order
 };
 
-/// Makes `count` renderers of one sort, one for each thread that draws. GL renderers
-/// share their meshes: each mesh is uploaded once, and one call of forget() frees it for all.
+/// Creates `count` renderers of the same kind, one for each drawing thread. GL renderers share
+/// their meshes: each mesh is uploaded once, and one call of forget() frees it for all.
 ///
-/// With `automatic`, EGL is tried first, then OSMesa, and the software renderer if
-/// neither works. With any other kind, throws std::runtime_error with all reasons if that kind
-/// does not work here.
+/// With `automatic`, tries EGL first, then OSMesa, and uses the software renderer if neither works.
+/// With any other kind, throws std::runtime_error with all reasons if that kind does not work here.
 MadeRenderers make_renderers(const RendererOptions& options, int count);
 
 struct MadeRenderer {

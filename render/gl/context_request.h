@@ -1,4 +1,4 @@
-// Which contexts are wanted, and why one was not taken. Needs no OpenGL.
+// Which contexts are requested, and why one was not used. Needs no OpenGL.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@ struct ContextRequest {
   bool egl = true;
   bool osmesa = true;
   /// The device to prefer: its index in EGL's list, or a part of its name or of the renderer's
-  /// name, in any case. Empty: no preference. A device that is preferred but does not work is
+  /// name, ignoring case. Empty: no preference. If the preferred device does not work, that is
   /// reported, and the others are tried.
   std::string device;
 };
 
-/// One candidate and why it was not taken.
+/// A candidate and the reason why it was not used.
 struct ContextFailure {
   std::string candidate;
   std::string reason;

@@ -30,12 +30,12 @@ std::optional<int> as_index(std::string_view text) {
   return index;
 }
 
-// Tries one candidate after another and keeps the reason of each failure.
+// Tries candidates one after the other and records the reason of each failure.
 class Search {
  public:
   explicit Search(const std::function<void(std::unique_ptr<GlContext>)>& use) : use_(use) {}
 
-  // Takes the candidate if it opens, `refusal` returns no reason against it, and `use` accepts it.
+  // Uses the candidate if it opens, `refusal` returns no reason against it, and `use` accepts it.
   template <typename Refusal>
   void attempt(const ContextCandidate& candidate, Refusal refusal) {
     try {

@@ -13,8 +13,8 @@ namespace trapeze {
 /// The contexts to try, best first: hardware devices, software devices, surfaceless, OSMesa.
 std::vector<ContextCandidate> list_context_candidates();
 
-/// Opens a candidate; its context is current on no thread afterwards. Throws std::runtime_error
-/// with the reason.
+/// Opens a candidate; its context is not current on any thread afterwards. Throws
+/// std::runtime_error with the reason.
 std::unique_ptr<GlContext> open_context(const ContextCandidate& candidate);
 
 struct ContextSearch {
@@ -22,7 +22,7 @@ struct ContextSearch {
   std::vector<ContextFailure> failures;
 };
 
-/// Opens one candidate after another and passes each that opens to `use`, until a call of `use`
+/// Opens candidates one after the other and passes each that opens to `use`, until a call of `use`
 /// returns without an exception. Failures of a candidate or of its use are not thrown, but listed.
 ContextSearch use_first_context(const ContextRequest& request,
                                 const std::function<void(std::unique_ptr<GlContext>)>& use);

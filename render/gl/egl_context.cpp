@@ -13,7 +13,7 @@
 namespace trapeze {
 namespace {
 
-// Whether a blank-separated list of extensions names that one.
+// Whether a space-separated list of extensions contains that one.
 bool has_extension(const char* extensions, std::string_view name) {
   if (extensions == nullptr) return false;
   std::string_view rest(extensions);
@@ -110,7 +110,7 @@ EGLDisplay display_of(const ContextCandidate& candidate) {
   return get_display(EGL_PLATFORM_DEVICE_EXT, devices[index], nullptr);
 }
 
-// A context of EGL, without any surface: the renderer draws into buffers of its own.
+// An EGL context without a surface: the renderer draws into buffers of its own.
 class EglContext final : public GlContext {
  public:
   explicit EglContext(const ContextCandidate& candidate) : display_(display_of(candidate)) {
@@ -132,7 +132,7 @@ class EglContext final : public GlContext {
   }
 
   void make_current() override {
-    eglBindAPI(EGL_OPENGL_API);  // a setting of each thread
+    eglBindAPI(EGL_OPENGL_API);  // a setting per thread
     if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
       throw_egl_error("eglMakeCurrent");
     }

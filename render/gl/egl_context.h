@@ -1,4 +1,4 @@
-// Contexts by EGL: devices, and surfaceless.
+// EGL contexts: devices, and surfaceless.
 #pragma once
 
 #include <memory>
@@ -8,10 +8,10 @@
 
 namespace trapeze {
 
-/// What EGL has to try, best first; nothing without EGL.
+/// The EGL candidates, best first; none without EGL.
 std::vector<ContextCandidate> list_egl_candidates();
 
-/// Opens one of those. Throws std::runtime_error with the reason.
+/// Opens one of these candidates. Throws std::runtime_error with the reason.
 std::unique_ptr<GlContext> open_egl_context(const ContextCandidate& candidate);
 
 }  // namespace trapeze

@@ -13,7 +13,7 @@
 
 namespace trapeze {
 
-/// The lowest version of OpenGL that suffices: 4.3, core profile.
+/// The minimum version of OpenGL: 4.3, core profile.
 constexpr int kLeastGlMajor = 4;
 constexpr int kLeastGlMinor = 3;
 
@@ -22,32 +22,32 @@ enum class ContextPath { egl_device, egl_software_device, egl_surfaceless, osmes
 /// "EGL device", "EGL software device", "EGL surfaceless" or "OSMesa".
 std::string_view name_of(ContextPath path);
 
-/// A context that may be tried, and may turn out not to work.
+/// A context that may be tried; it may turn out not to work.
 struct ContextCandidate {
   ContextPath path = ContextPath::egl_surfaceless;
-  int device_index = -1;    // place in EGL's own list of devices; -1 where there is no device
-  std::string device_name;  // device file, or what the driver says; may be empty
+  int device_index = -1;    // index in EGL's own list of devices; -1 if there is no device
+  std::string device_name;  // device file, or the driver's name for it; may be empty
 
   /// For messages, such as "EGL device 0 (/dev/dri/renderD128)".
   std::string text() const;
 };
 
-/// A context that has been opened.
+/// A context that was opened.
 struct ContextInfo {
   ContextCandidate candidate;
   std::string vendor;
   std::string renderer;
   std::string version;
 
-  /// Whether the CPU draws.
+  /// Whether the CPU does the drawing.
   bool is_software() const;
   /// One line for logs.
   std::string text() const;
 };
 
-/// Thread-safety: current on one thread at a time, on any thread; make_current and release are
-/// called on that thread. All contexts of one share group see the same buffers, textures and
-/// programs. A context may be destroyed on any thread while it is current on none, and in any order
+/// Thread-safety: a context is current on one thread at a time, on any thread; make_current and
+/// release must be called on that thread. All contexts of a share group share buffers, textures and
+/// programs. A context may be destroyed on any thread while it is not current, and in any order
 /// within its group.
 class GlContext {
  public:
@@ -56,7 +56,7 @@ class GlContext {
   /// Throws std::runtime_error if the device is lost or the context is current elsewhere.
   virtual void make_current() = 0;
   virtual void release() noexcept = 0;
-  /// A further context of the same share group. Throws std::runtime_error.
+  /// Creates another context of the same share group. Throws std::runtime_error.
   virtual std::unique_ptr<GlContext> create_shared() = 0;
 
   const GlFunctions& gl() const { return gl_; }
@@ -64,7 +64,7 @@ class GlContext {
 
  protected:
   /// Fills gl_ and info_, and throws std::runtime_error unless this is OpenGL 4.3 or later. The
-  /// context is current.
+  /// context must be current.
   void inspect(GlFunctions::Lookup lookup, const ContextCandidate& candidate);
 
  private:

@@ -1,5 +1,5 @@
-// The OpenGL functions that the renderer calls, loaded by name from whichever library made the
-// context. Nothing links to libGL, so EGL and OSMesa can live in one process.
+// The OpenGL functions that the renderer calls, loaded by name from the library that created the
+// context. Nothing links to libGL, so EGL and OSMesa can be used in one process.
 //
 // Thread-safety: immutable once loaded.
 #pragma once
@@ -58,7 +58,7 @@ struct GlFunctions {
   using AnyFunction = void (*)();
   using Lookup = AnyFunction (*)(const char* name);
 
-  /// Throws std::runtime_error, naming the function, if one is missing.
+  /// Throws std::runtime_error that names the function if one is missing.
   static GlFunctions load(Lookup lookup);
 };
 

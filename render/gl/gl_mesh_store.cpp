@@ -103,7 +103,7 @@ GlMeshStore::ChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshV
     is_intact = gl.UnmapBuffer(GL_TEXTURE_BUFFER) == GL_TRUE;
   }
   gl.BindBuffer(GL_TEXTURE_BUFFER, 0);
-  // Other contexts of the group see what is finished here once they bind it.
+  // Other contexts of the group see the finished data once they bind the buffer.
   gl.Finish();
   if (!is_intact || gl.GetError() != GL_NO_ERROR) {
     throw std::runtime_error("uploading trapezoids to the GL device failed");

@@ -1,13 +1,13 @@
 // The trapezoids of meshes in the memory of a GL device, uploaded once for a whole share group.
 //
-// A trapezoid is stored with its own copy of the ten integers that make it up (the y of its top and
-// bottom, both ends of both sides): 40 bytes, read from one place; three indexed arrays would take
-// about 30 bytes and four dependent reads. Meshes are cut into chunks of equal numbers of
-// trapezoids, uploaded when they are first drawn; so indices fit into 32 bits, and buffers into the
-// limits of the device, however large the mesh is.
+// A trapezoid is stored with its own copy of the ten integers that define it (the y of its top and
+// bottom, both ends of both sides): 40 bytes, read from one place; three indexed arrays would need
+// about 30 bytes and four dependent reads. Meshes are divided into chunks of equal numbers of
+// trapezoids, which are uploaded when they are first drawn. So indices fit into 32 bits, and
+// buffers into the limits of the device, however large the mesh is.
 //
-// Thread-safety: all functions may be called from all threads; those that take `gl` need a context
-// of the share group current on the calling thread.
+// Thread-safety: all functions may be called from all threads; those with a parameter `gl` need a
+// context of the share group current on the calling thread.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace trapeze {
 
 class GlMeshStore {
  public:
-  static constexpr int kTexelsPerTrapezoid = 5;  // of two 32-bit integers each
+  static constexpr int kTexelsPerTrapezoid = 5;  // each of two 32-bit integers
 
   struct Chunk {
     GLuint buffer = 0;
@@ -34,15 +34,16 @@ class GlMeshStore {
 
   explicit GlMeshStore(const GlFunctions& gl);
 
-  /// Trapezoids in a chunk: chunk i begins at trapezoid i * chunk_size().
+  /// Trapezoids per chunk: chunk i begins at trapezoid i * chunk_size().
   std::uint32_t chunk_size() const { return chunk_size_; }
 
-  /// The chunk of that index, usable in any context of the share group; uploaded, if it is not yet,
-  /// on behalf of `uploader`. Throws std::runtime_error if the device is out of memory.
+  /// The chunk with that index, usable in any context of the share group; uploaded on behalf of
+  /// `uploader` if it has not been uploaded yet. Throws std::runtime_error if the device is out of
+  /// memory.
   ChunkPointer chunk(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index,
                      const void* uploader);
 
-  /// The buffer of that chunk of a mesh whose contents change: it has room for chunk_size()
+  /// The buffer of that chunk of a mesh with changing contents: it has room for chunk_size()
   /// trapezoids, which the caller writes. No thread may draw from it meanwhile; later draws find
   /// the chunk under the id. Throws like chunk().
   GLuint changing_buffer(const GlFunctions& gl, std::uint64_t mesh_id, std::uint32_t index);
@@ -50,15 +51,15 @@ class GlMeshStore {
   /// Releases the chunks of a mesh; a draw in progress keeps those that it uses.
   void forget(std::uint64_t mesh_id);
 
-  /// Releases the chunks that were uploaded on behalf of `uploader`, likewise. Who needs one of
-  /// them next uploads it again.
+  /// Releases the chunks that were uploaded on behalf of `uploader`, in the same way. The next draw
+  /// that needs one of them uploads it again.
   void forget_uploads(const void* uploader);
 
-  /// Deletes the buffers and textures of chunks that were released.
+  /// Deletes the buffers and textures of released chunks.
   void delete_forgotten(const GlFunctions& gl);
 
  private:
-  // GL names of chunks that are no longer in use, until a thread with a context deletes them.
+  // GL names of chunks that are no longer used, until a thread with a context deletes them.
   struct Released {
     std::mutex mutex;
     std::vector<GLuint> buffers;

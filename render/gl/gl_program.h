@@ -1,4 +1,4 @@
-// Compiles GL programs of one compute shader.
+// Compiles GL programs with a single compute shader.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace trapeze {
 
-/// Compiles and links a program. A context is current. Throws std::runtime_error with the driver's
-/// message if that fails.
+/// Compiles and links a program. A context must be current. Throws std::runtime_error with the
+/// driver's message if that fails.
 GLuint make_compute_program(const GlFunctions& gl, const std::string& source);
 
 }  // namespace trapeze

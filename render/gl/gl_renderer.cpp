@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-// Of a pass, in pixels: a few dozen tiles.
+// In one pass, in pixels: a few dozen tiles.
 constexpr std::size_t kMostPixels = std::size_t{1} << 22;
 
 template <class Element>
@@ -20,7 +20,7 @@ GLsizeiptr bytes_of(std::size_t elements) {
   return static_cast<GLsizeiptr>(elements * sizeof(Element));
 }
 
-// Adds the sums of the shader to wider ones and sets them to 0.
+// Adds the sums of the shader to wider ones and resets them to 0.
 void take_units(std::span<std::int32_t> units, std::span<std::int64_t> sums) {
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += std::exchange(units[i], 0);
 }
@@ -38,7 +38,7 @@ std::string_view gl_error_name(GLenum error) {
   }
 }
 
-// A lost context may report its error for ever.
+// A lost context may report its error forever.
 void throw_on_gl_error(const GlFunctions& gl, const char* what) {
   const GLenum error = gl.GetError();
   if (error == GL_NO_ERROR) return;
@@ -114,7 +114,7 @@ DrawTimes GlRenderer::draw(std::span<const MaskTask> tasks) {
   for (const MaskTask& task : tasks) task.view.check();
   const CurrentContext current(*context_);
   store_->delete_forgotten(gl_);
-  // Of a draw that failed.
+  // Left over from a draw that failed.
   if (used_ > 0) differences_size_ = 0;
   bands_.clear();
   batches_.clear();
@@ -137,12 +137,12 @@ void GlRenderer::release_memory() {
   try {
     release_device_memory();
   } catch (const std::exception&) {
-    // The context is lost, and its objects with it: the next draw says so.
+    // The context is lost, and its objects with it: the next draw reports it.
   }
 }
 
-// A picture of most of a layer needs chunks of many times the size of its masks; others upload the
-// few that they need within milliseconds.
+// A picture of most of a layer needs chunks many times larger than its masks; other pictures upload
+// the few chunks that they need within milliseconds.
 void GlRenderer::release_device_memory() {
   store_->forget_uploads(this);
   const CurrentContext current(*context_);
@@ -163,9 +163,9 @@ void GlRenderer::draw_task(const MaskTask& task, DrawTimes& times) {
   }
 }
 
-// Adds the trapezoids of the band to the pass. A full pass is finished first; so is a pass in which
-// the band might have more trapezoids than its sums can hold, and the band continues in the next
-// one.
+// Adds the trapezoids of the band to the pass. If the pass is full, it is finished first. The same
+// happens if the band may have more trapezoids than its sums can hold; the band then continues in
+// the next pass.
 void GlRenderer::draw_band(Band band, DrawTimes& times) {
   if (band.task->cancellation != nullptr) band.task->cancellation->check();
   if (used_ + band.pixels() > room_) finish_pass(times);
@@ -296,7 +296,7 @@ void GlRenderer::set_band(const Band& band) const {
   gl_.Uniform1i(program_.place, static_cast<GLint>(band.place));
 }
 
-// Sums of earlier passes are those of the band that is resolved first.
+// Sums of earlier passes belong to the band that is resolved first.
 void GlRenderer::resolve(const Band& band) {
   const auto width = static_cast<std::size_t>(band.task->view.width);
   const std::span<std::int32_t> differences = differences_.subspan(band.place, band.pixels());

@@ -1,13 +1,12 @@
-// Draws masks with OpenGL: exact area, not multisampling. See gl_shader.h for how.
+// Draws masks with OpenGL: exact area, not multisampling. See gl_shader.h for the method.
 //
 // A compute shader adds up areas as integers in a buffer. The buffer is read back, and its rows are
 // summed and rounded to 8 bits on the CPU. Rasterizing strips and points with additive blending
-// gives the same masks, but takes a software device ten times as long for each trapezoid.
+// gives the same masks, but takes a software device ten times as long per trapezoid.
 //
-// On a GPU, tasks are drawn in batches: they share one buffer, one after the other, so that the
-// fixed cost of a pass, which is most of the cost of a light tile, is paid once for all. A software
-// device draws one task a pass: a pass costs it little, and the differences of one picture stay in
-// the cache.
+// On a GPU, tasks are drawn in batches: they share one buffer, so that the fixed cost of a pass,
+// which is most of the cost of a light tile, is paid once for all. A software device draws one task
+// per pass: passes are cheap there, and the differences of one picture stay in the cache.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +21,12 @@
 
 namespace trapeze {
 
-/// The context is current only during draw(), so the renderer may be used by one thread after the
-/// other.
+/// The context is current only during draw(), so different threads may use the renderer one after
+/// the other.
 class GlRenderer final : public MaskRenderer {
  public:
-  /// `store` is that of the context's share group. Throws std::runtime_error if the device
-  /// lacks what the renderer needs.
+  /// `store` must be that of the context's share group. Throws std::runtime_error if the device
+  /// lacks something that the renderer needs.
   GlRenderer(std::unique_ptr<GlContext> context, std::shared_ptr<GlMeshStore> store);
   ~GlRenderer() override;
   GlRenderer(const GlRenderer&) = delete;
@@ -57,7 +56,7 @@ class GlRenderer final : public MaskRenderer {
     GLint place = -1;
   };
 
-  // Successive rows of a picture; all of them if the buffer has room.
+  // Consecutive rows of a picture; all rows if the buffer has room.
   struct Band {
     const MaskTask* task = nullptr;
     int first_row = 0;
@@ -100,18 +99,18 @@ class GlRenderer final : public MaskRenderer {
   const GlFunctions& gl_;
   bool gains_by_batching_;
   Program program_;
-  std::size_t room_ = 0;  // pixels in a pass
+  std::size_t room_ = 0;  // pixels per pass
   GLuint index_buffer_ = 0;
   GLuint differences_buffer_ = 0;
   std::size_t differences_size_ = 0;  // pixels; all are zero between passes
 
-  // Of the pass being prepared.
+  // For the pass being prepared.
   std::vector<std::uint32_t> indices_;
   std::vector<Batch> batches_;
   std::vector<Band> bands_;
   std::size_t used_ = 0;                 // pixels
   std::span<std::int32_t> differences_;  // mapped
-  std::vector<std::int64_t> sums_;       // of earlier passes, of the first band; or empty
+  std::vector<std::int64_t> sums_;       // of earlier passes, for the first band; or empty
 };
 
 }  // namespace trapeze

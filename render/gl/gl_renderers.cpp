@@ -32,9 +32,9 @@ std::vector<std::unique_ptr<MaskRenderer>> renderers_of(std::unique_ptr<GlContex
 
 // Without threads of its own, llvmpipe computes on the threads that call it, but on one of them at
 // a time. That is best for a few threads: a tile computes for a quarter of its time, and no thread
-// has to wake another, which takes longer than is gained, even by one renderer and by pictures of
-// 1024 pixels. More would wait for each other. The variable is read once, when the first context is
-// made.
+// has to wake another one, which takes longer than it gains, even with one renderer and pictures of
+// 1024 pixels. With more threads, they would wait for each other. The variable is read once, when
+// the first context is created.
 void choose_llvmpipe_threads(int renderers) {
   constexpr int kFew = 4;
   setenv("LP_NUM_THREADS", renderers <= kFew ? "0" : std::to_string(renderers).c_str(), 0);

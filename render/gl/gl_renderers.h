@@ -1,4 +1,4 @@
-// Makes renderers by GL, if a context works. This header includes none of OpenGL's.
+// Creates GL renderers, if a context works. This header includes no OpenGL headers.
 #pragma once
 
 #include <memory>
@@ -10,12 +10,12 @@
 namespace trapeze {
 
 struct GlRenderers {
-  std::vector<std::unique_ptr<MaskRenderer>> renderers;  // none if no context works here
+  std::vector<std::unique_ptr<MaskRenderer>> renderers;  // empty if no context works here
   std::vector<ContextFailure> failures;                  // the contexts tried before
 };
 
-/// Makes `count` renderers that share one store of meshes, one for each thread that draws. Contexts
-/// that do not work are listed with their reasons; nothing is thrown because of them.
+/// Creates `count` renderers that share one store of meshes, one for each drawing thread. Contexts
+/// that do not work are listed with their reasons instead of throwing.
 GlRenderers make_gl_renderers(const ContextRequest& request, int count);
 
 }  // namespace trapeze

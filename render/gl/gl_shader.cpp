@@ -5,8 +5,8 @@
 namespace trapeze::gl_shader {
 namespace {
 
-// A span is the y of a top and of a bottom, in pixels from the top of the band of rows that is
-// drawn. "Local" coordinates are in pixels from the corner of a pixel beside the side, so that
+// A span contains the y of a top and of a bottom, in pixels from the top of the band of rows that
+// is drawn. "Local" coordinates are in pixels from the corner of a pixel next to the side, so that
 // errors of single precision are relative to that distance and not to the size of the picture.
 constexpr const char* kTrapezoid = R"(
 layout(binding = 0) uniform isamplerBuffer trapezoids;

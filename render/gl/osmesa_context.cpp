@@ -10,10 +10,10 @@
 namespace trapeze {
 namespace {
 
-constexpr const char* kLibrary = "libOSMesa.so.8";  // as GL/osmesa.h of all versions of Mesa has it
+constexpr const char* kLibrary = "libOSMesa.so.8";  // as in GL/osmesa.h of all Mesa versions
 
-/// The library, once it is wanted: it brings LLVM, which would take a quarter of the time to start
-/// any command, and 10 MB of memory.
+/// The library, loaded on first use: it loads LLVM, which would take a quarter of the start-up time
+/// of every command, and 10 MB of memory.
 struct Osmesa {
   decltype(&::OSMesaCreateContextAttribs) create = nullptr;
   decltype(&::OSMesaDestroyContext) destroy = nullptr;
@@ -28,7 +28,7 @@ struct Osmesa {
 
  private:
   Osmesa() {
-    // Never closed: what Mesa keeps for a thread outlives the contexts.
+    // Never closed: data that Mesa keeps per thread outlives the contexts.
     void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
       const char* const reason = dlerror();
@@ -104,7 +104,7 @@ class OsmesaContext final : public GlContext {
 
   const Osmesa& osmesa_;
   OSMesaContext context_ = nullptr;
-  // OSMesa wants a window to draw into; nothing is ever drawn there.
+  // OSMesa needs a window to draw into; nothing is ever drawn there.
   std::array<unsigned char, 4> pixel_{};
 };
 

@@ -1,5 +1,5 @@
-// Contexts by OSMesa, which draws in memory and knows no devices. Its library is loaded when the
-// first one is opened.
+// OSMesa contexts, which draw in memory and use no device. The library is loaded when the first one
+// is opened.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace trapeze {
 
-/// Whether this program was built to draw by OSMesa. Its library may be missing all the same.
+/// Whether this program was built with OSMesa support. The library may still be missing.
 bool has_osmesa();
 
 /// Throws std::runtime_error with the reason.

@@ -9,12 +9,13 @@
 namespace trapeze {
 namespace {
 
-/// The values of a row become runs, as far as they have been looked at; the others are 0.
+/// Converts the values of a row to runs; columns that are not passed to take() are 0.
 class RowRuns {
  public:
   explicit RowRuns(Mask& mask) : mask_(mask) {}
 
-  /// Looks at those of some columns, which follow those looked at before, or 0s after them.
+  /// Adds the values of some columns, which must come after those added before; skipped columns are
+  /// 0.
   void take(const std::uint8_t* values, std::size_t begin, std::size_t end) {
     if (begin > done_) take_next(done_, 0);
     std::size_t i = begin;
@@ -48,14 +49,14 @@ class RowRuns {
 
   Mask& mask_;
   std::size_t done_ = 0;    // columns
-  std::uint8_t value_ = 0;  // of the run at hand
+  std::uint8_t value_ = 0;  // of the current run
 };
 
 }  // namespace
 
 void Canvas::begin(int width, int height) {
   if (width != width_ || height != height_ || !is_clean_) {
-    width_ = height_ = 0;  // what there is no memory for is begun anew the next time
+    width_ = height_ = 0;  // if memory runs out below, the next call starts over
     const auto columns = static_cast<std::size_t>(width);
     const auto rows = static_cast<std::size_t>(height);
     values_.assign(columns * rows, 0);

@@ -10,22 +10,22 @@
 
 namespace trapeze {
 
-/// Use for one mask after the other: only what has been written of it costs anything.
+/// Use it for one mask after the other: the cost depends only on the part that is written.
 class Canvas {
  public:
-  /// Begins a mask whose values are all 0. What was not finished is dropped.
+  /// Starts a mask with all values 0. An unfinished mask is discarded.
   void begin(int width, int height);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// The values of a row, those of columns `begin` up to the one before `end` to be written.
-  /// Precondition: begin < end.
+  /// The values of a row, of which columns `begin` to `end` - 1 will be written. Precondition:
+  /// begin < end.
   std::uint8_t* row(int row, int begin, int end) {
     const auto i = static_cast<std::size_t>(row);
     touched_.touch(i, static_cast<std::size_t>(begin), static_cast<std::size_t>(end) - 1);
     return values_.data() + i * static_cast<std::size_t>(width_);
   }
-  /// The same for the columns that touched() is of, which are those of several rows.
+  /// The same for the columns of a result of touched(), which several rows may share.
   std::uint8_t* row(int row, std::uint64_t touched) {
     const auto i = static_cast<std::size_t>(row);
     touched_.touch(i, touched);
@@ -34,7 +34,7 @@ class Canvas {
   std::uint64_t touched(int begin, int end) const {
     return touched_.bits_of(static_cast<std::size_t>(begin), static_cast<std::size_t>(end) - 1);
   }
-  /// Ends the mask.
+  /// Finishes the mask.
   void finish(Mask& mask);
 
  private:

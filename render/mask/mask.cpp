@@ -21,7 +21,7 @@ bool is_off_grid(double from, double to) {
   return to < kGridMin || from > kGridMax;
 }
 
-/// Of the whole cells that a picture may show.
+/// The sides of the cells that a picture may show.
 struct Sides {
   double west;
   double north;
@@ -38,8 +38,8 @@ Sides sides_of(const View& view) {
           y + std::ceil((view.first_row + view.height) * rows)};
 }
 
-/// Of a picture in plate carree: all cells of the grid that it may show, where points are rounded
-/// to cells of either kind.
+/// For a picture in plate carree: all grid cells that it may show, although points are rounded to
+/// cells of either kind.
 Sides in_mercator(const Sides& sides) {
   return {sides.west, std::floor(mercator_from_plate_carree(sides.north - 1)), sides.east,
           std::ceil(mercator_from_plate_carree(sides.south + 1))};
@@ -164,7 +164,7 @@ std::uint8_t Mask::at(int column, int row) const {
 void Mask::copy_row(int row, std::uint8_t* values) const {
   std::size_t begin = 0;
   for (const MaskRun& run : this->row(row)) {
-    // Most runs are short: what is written beyond one is overwritten by the next.
+    // Most runs are short: excess values are overwritten by the next run.
     for (; begin < run.end; begin += kCopyRoom) std::memset(values + begin, run.value, kCopyRoom);
     begin = run.end;
   }

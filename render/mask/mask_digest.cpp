@@ -12,16 +12,16 @@
 namespace trapeze {
 namespace {
 
-// Takes the place of the points of a side that lies wholly to the west of the view.
+// Replaces the points of a side that is completely west of the view.
 constexpr std::uint64_t kWest = 0x6a09e667f3bcc908;
 
-/// The rows of cells from one to another, counted from the origin of the view.
+/// A range of rows of cells, counted from the origin of the view.
 struct Span {
   std::int64_t top = 0;
   std::int64_t bottom = 0;
 };
 
-// Cells are counted from the corner of the view, modulo 2^32: the grid has no more.
+// Cells are counted from the corner of the view, modulo 2^32, which is the size of the grid.
 std::uint64_t word_of(Point p, const View& view) {
   const auto x = static_cast<std::uint32_t>(p.x - view.origin_x);
   const auto y = static_cast<std::uint32_t>(p.y - view.origin_y);
@@ -37,17 +37,18 @@ class SidesInView {
               static_cast<std::int64_t>(
                   std::ceil((view.first_row + view.height) * view.cells_per_row()))} {}
 
-  /// The whole of the view.
+  /// The rows of the whole view.
   Span rows() const { return rows_; }
 
-  /// Of a trapezoid, what lies in the view; nothing if `top` is not less than `bottom`.
+  /// The part of a trapezoid's rows that is in the view; nothing if `top` is not less than
+  /// `bottom`.
   Span span_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) const {
     const std::int64_t top = mesh.vertices[trapezoid.top].y - view_.origin_y;
     const std::int64_t bottom = mesh.vertices[trapezoid.bottom].y - view_.origin_y;
     return {std::max(top, rows_.top), std::min(bottom, rows_.bottom)};
   }
 
-  /// What lies east of a side is covered, or if it is a right side, uncovered.
+  /// The area east of a side is covered, or for a right side, uncovered.
   void add(const MeshView& mesh, std::uint32_t edge, Span span, bool is_right,
            SetHash& hash) const {
     const Point upper = mesh.vertices[mesh.edges[edge].upper];
@@ -66,7 +67,7 @@ class SidesInView {
     is_right ? hash.take_away(item) : hash.add(item);
   }
 
-  /// A side that is cut in two counts as much as the whole of it.
+  /// A side that is cut in two counts the same as the whole side.
   static void add_west(Span span, bool is_right, SetHash& hash) {
     const SetHash::Item from = {kWest, kWest, static_cast<std::uint64_t>(span.top)};
     const SetHash::Item to = {kWest, kWest, static_cast<std::uint64_t>(span.bottom)};
@@ -106,8 +107,8 @@ std::uint64_t word_of_line(const OutlineEdge& edge) {
   return digester.digest().low;
 }
 
-/// Where lines are joined by which vertices they share, that counts too: vertices are numbered as
-/// they come up along lines in an order that is that of places.
+/// If lines are joined at shared vertices, sharing counts as well: vertices are numbered as they
+/// occur along the lines, in an order determined by places.
 Digest digest_of_joined(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
                         const View& view) {
   std::vector<const OutlineEdge*> order;

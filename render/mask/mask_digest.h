@@ -1,5 +1,5 @@
-// What tells a mask from others before it is drawn: a digest of the sides, or of the lines, that it
-// is drawn from.
+// Digests that identify a mask before it is drawn, computed from the sides or lines that it is
+// drawn from.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -13,20 +13,20 @@
 
 namespace trapeze {
 
-/// Of the parts of a mask in that view. Masks of equal digests and views of the same size are
-/// equal if they have as many cells a pixel and the same renderer draws them. It depends neither on
-/// the order of the trapezoids, nor on how they are numbered, nor on what lies off the picture, nor
-/// on where in the world the picture is: what counts is sides as they are cut to the view, in cells
-/// from its corner. Sides that two trapezoids have in common cancel out.
+/// The digest of the parts of a mask in that view. Masks with equal digests and views of equal size
+/// are equal if they have the same number of cells per pixel and the same renderer draws them. The
+/// digest does not depend on the order or numbering of the trapezoids, on anything off the picture,
+/// or on where in the world the picture is: it covers the sides as clipped to the view, in cells
+/// from its corner. Sides shared by two trapezoids cancel out.
 Digest mask_digest(std::span<const MeshPart> parts, const View& view);
 
-/// The digest of a mask that covers the view wholly, as mask_digest() finds it whenever there is
-/// nothing but sides to the west and to the east of the view.
+/// The digest of a mask that covers the whole view: the result of mask_digest() if all sides are
+/// west or east of the view.
 Digest whole_mask_digest(const View& view);
 
-/// Of lines along edges, see Stroker::draw(). Masks of equal digests, strokes, and views of the
-/// same size and cells_per_pixel are equal, however the edges are numbered and wherever the picture
-/// is.
+/// The digest of lines along edges, see Stroker::draw(). Masks with equal digests, strokes, and
+/// views of the same size and cells_per_pixel are equal, however the edges are numbered and
+/// wherever the picture is.
 Digest outline_digest(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
                       const Stroke& stroke, const View& view);
 

@@ -11,7 +11,8 @@ struct Direction {
   int y;
 };
 
-// All around, so that the outermost points follow each other along the border of what they enclose.
+// In circular order, so that successive outermost points follow the border of the area they
+// enclose.
 constexpr std::array<Direction, 8> kAllAround = {
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
@@ -23,7 +24,7 @@ void OutlineField::begin(int width, int height, double reach) {
   margin_ = static_cast<int>(std::ceil(reach)) + 1;
   columns_ = width + 2 * margin_;
   rows_ = height + 2 * margin_;
-  // The nearest cell may lie a little further than the nearest point.
+  // The nearest cell may be slightly further away than the nearest point.
   const auto most = static_cast<float>(reach + 2);
   most_squared_ = most * most;
   const auto pixels = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
@@ -118,7 +119,7 @@ void OutlineField::spread(const Cancellation* cancellation) {
   }
 }
 
-// From the row before, then along the row in both directions.
+// From the previous row, then along the row in both directions.
 void OutlineField::spread_row(int row, int previous_row) {
   const bool has_previous = previous_row >= 0 && previous_row < rows_;
   for (int column = 0; column < columns_; ++column) {

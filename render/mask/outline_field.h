@@ -1,10 +1,11 @@
 // The distance of every pixel from the nearest of many lines, at a cost that does not grow with the
 // width of the lines.
 //
-// Of each pixel that lines pass through, their outermost points in eight directions are kept. So a
-// cell with one line in it has the ends of the piece within the cell, and the distance from it is
-// exact; from a cell with many lines it is right within a tenth of a pixel, at two pixels and
-// further away. The nearest cell spreads from pixel to pixel, row by row, down and up again.
+// For each pixel crossed by lines, the outermost points of the lines in eight directions are
+// stored. If a cell contains a single line, these are the ends of the piece within the cell, and
+// distances from it are exact; distances from a cell with many lines have an error of at most a
+// tenth of a pixel, from a distance of two pixels on. The nearest cell is propagated from pixel to
+// pixel, row by row, downwards and then upwards.
 #pragma once
 
 #include <algorithm>
@@ -23,30 +24,30 @@ struct PicturePlace {
   double y;
 };
 
-/// Working memory for one picture after the other. One thread at a time may use it.
+/// Working memory, used for one picture after the other. One thread at a time.
 class OutlineField {
  public:
-  /// Begins anew: a picture of width x height pixels, and lines that nothing further than `reach`
-  /// pixels from them asks for.
+  /// Starts a picture of width x height pixels; pixels further than `reach` pixels from all lines
+  /// are not of interest.
   void begin(int width, int height, double reach);
 
-  /// Adds a line. share_at(part), for a part of its length from 0 to 1, is how much of the line is
-  /// there, from 0 to 1: where lines share a pixel, the greatest share counts.
+  /// Adds a line. share_at(part), for a position along its length from 0 to 1, is the share of ink
+  /// there, from 0 to 1: if lines share a pixel, the greatest share counts.
   template <typename ShareAt>
   void add(PicturePlace from, PicturePlace to, const ShareAt& share_at);
 
-  /// Finds the nearest lines, when all have been added. Throws Cancelled.
+  /// Finds the nearest lines, after all have been added. Throws Cancelled.
   void spread(const Cancellation* cancellation);
 
-  /// Of a pixel of the picture, after spread().
+  /// The nearest line of a pixel of the picture, after spread().
   struct Nearest {
-    float distance;  // of its centre, in pixels; beyond the reach if there is no line within it
+    float distance;  // from its centre, in pixels; more than the reach if no line is within it
     float share;     // of the line there
   };
   Nearest nearest(int column, int row) const;
 
-  /// Cells that lines passed through, each time, and cells that were looked at in search of the
-  /// nearest one: the work that was done since begin().
+  /// The work done since begin(): how many cells lines have crossed, each crossing counted, and how
+  /// many cells were examined to find the nearest one.
   std::uint64_t steps() const { return steps_; }
   /// Bytes of working memory.
   std::size_t memory() const;
@@ -54,7 +55,7 @@ class OutlineField {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
   static constexpr int kDirections = 8;
-  static constexpr double kParts = 255;  // of a pixel, in which points are kept
+  static constexpr double kParts = 255;  // of a pixel, the resolution of stored points
 
   struct CellPoint {
     std::uint8_t x;
@@ -68,7 +69,7 @@ class OutlineField {
     std::array<CellPoint, kDirections> outermost;
     std::uint8_t share;
   };
-  // Of a line, as far as it crosses the grid: parts of its length.
+  // The part of a line that crosses the grid, as positions along its length.
   struct Crossing {
     double begin;
     double end;
@@ -85,14 +86,14 @@ class OutlineField {
            static_cast<std::size_t>(column);
   }
 
-  // The grid: the picture, and a margin around it.
+  // The grid: the picture with a margin around it.
   int margin_ = 0;
   int columns_ = 0;
   int rows_ = 0;
-  float most_squared_ = 0;              // distance that is of interest
-  std::vector<Cell> cells_;             // that lines pass through
-  std::vector<std::uint32_t> nearest_;  // cell, by pixel
-  std::vector<float> squared_;          // distance from it, by pixel
+  float most_squared_ = 0;              // maximum distance of interest
+  std::vector<Cell> cells_;             // crossed by lines
+  std::vector<std::uint32_t> nearest_;  // index of the cell, by pixel
+  std::vector<float> squared_;          // squared distance from it, by pixel
   std::uint64_t steps_ = 0;
 };
 
@@ -110,7 +111,7 @@ void OutlineField::add(PicturePlace from, PicturePlace to, const ShareAt& share_
   PicturePlace here = place_at(begin);
   int column = std::min(static_cast<int>(here.x), columns_ - 1);
   int row = std::min(static_cast<int>(here.y), rows_ - 1);
-  // The parts at which the line leaves the column and the row.
+  // The positions at which the line leaves the column and the row.
   const auto part_at = [](double border, double start, double along) {
     return along == 0 ? 2.0 : (border - start) / along;
   };

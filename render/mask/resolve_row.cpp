@@ -15,33 +15,32 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::size_t kBlock = 8;  // pixels that are computed at once
+constexpr std::size_t kBlock = 8;  // pixels computed at the same time
 
 constexpr float kValuesPerUnit = 255.0f / kUnitsPerPixel;
 
-// By the vector extensions of g++ and clang: the same operations in the same order, and so the same
-// values, whatever instructions the processor has for them.
+// Uses the vector extensions of g++ and clang: the same operations in the same order, so the values
+// do not depend on the instruction set of the processor.
 using Integers __attribute__((vector_size(kBlock * sizeof(std::int32_t)))) = std::int32_t;
 using Floats __attribute__((vector_size(kBlock * sizeof(float)))) = float;
 using Bytes __attribute__((vector_size(kBlock))) = std::uint8_t;
 
 /// A row while it is computed.
 struct Row {
-  std::array<std::uint8_t, kMaxPicturePixels> values;  // where it was touched
-  // By pixel, whether its value differs from that of the pixel before.
+  std::array<std::uint8_t, kMaxPicturePixels> values;  // valid where touched
+  // By pixel, whether its value differs from that of the previous pixel.
   std::array<std::uint64_t, words_for(kMaxPicturePixels)> changes;
 
   explicit Row(std::size_t columns) { std::fill_n(changes.data(), words_for(columns), 0); }
 };
 
-/// What a span of columns begins with: the sum of all differences before it, and the value there.
+/// The state before a span of columns: the sum of all earlier differences, and the last value.
 struct Before {
   std::int32_t sum = 0;
   std::uint8_t value = 0;
 };
 
-/// Computes the values of the columns from `begin` to the one before `end`, which are a multiple of
-/// kBlock.
+/// Computes the values of the columns from `begin` to `end` - 1; both are multiples of kBlock.
 [[gnu::always_inline]] inline void sum_blocks(std::int32_t* differences, std::size_t begin,
                                               std::size_t end, Before& before, Row& row) {
   constexpr Integers kNone{};
@@ -100,14 +99,14 @@ SumBlocks best_sum_blocks() {
 
 #endif
 
-/// Goes along a row of differences and sets them to 0.
+/// Processes a row of differences and sets them to 0.
 class RowSum {
  public:
   explicit RowSum(std::span<std::int32_t> differences)
       : differences_(differences), row_(differences.size()) {}
 
-  /// Takes those of some columns; all that lie between them and those taken before are 0.
-  /// Precondition: begin is a multiple of kBlock, and end is one or ends the row.
+  /// Processes some columns; all between them and those processed before are 0. Precondition: begin
+  /// is a multiple of kBlock, and end is one or is the end of the row.
   void take(std::size_t begin, std::size_t end) {
     static const SumBlocks sum = best_sum_blocks();
     const std::size_t whole_blocks = begin + (end - begin) / kBlock * kBlock;
@@ -118,7 +117,7 @@ class RowSum {
   void finish(Mask& mask) {
     const std::size_t columns = differences_.size();
     const std::span<std::uint64_t> changes(row_.changes.data(), words_for(columns));
-    std::uint8_t value = 0;  // of the run at hand
+    std::uint8_t value = 0;  // of the current run
     if ((changes[0] & 1) != 0) value = row_.values[0];
     changes[0] &= ~std::uint64_t{1};
     for_each_bit(changes, [&](std::size_t column) {
@@ -130,7 +129,7 @@ class RowSum {
   }
 
  private:
-  // What follows a rest is 0, so that nothing changes there.
+  // The columns after the rest are 0, so nothing changes there.
   void take_rest(std::size_t column, std::size_t count) {
     std::array<std::int32_t, kBlock> rest{};
     const auto here = differences_.subspan(column, count);
@@ -158,7 +157,7 @@ bool is_all_zero(const std::int32_t* differences) {
 
 }  // namespace
 
-// Blocks of zeros continue the run at hand.
+// Blocks of zeros continue the current run.
 void resolve_row(std::span<std::int32_t> differences, Mask& mask) {
   RowSum sum(differences);
   std::size_t i = 0;
@@ -182,7 +181,7 @@ void resolve_row(std::span<std::int32_t> differences, std::uint64_t touched, uns
   sum.finish(mask);
 }
 
-// Sums that are clamped already have differences of 32 bits, and the same values.
+// Clamped sums have differences of 32 bits, and give the same values.
 void resolve_row(std::span<std::int64_t> differences, Mask& mask) {
   std::array<std::int32_t, kMaxPicturePixels> clamped;
   std::int64_t sum = 0;

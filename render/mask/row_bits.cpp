@@ -3,7 +3,7 @@
 namespace trapeze {
 namespace {
 
-/// Of the runs for whose value is_marked(value) holds. Whether there are any.
+/// Sets the bits of runs whose value satisfies is_marked(value). Returns whether there are any.
 template <typename IsMarked>
 bool mark_runs(std::span<const MaskRun> row, std::span<std::uint64_t> bits,
                const IsMarked& is_marked) {

@@ -1,4 +1,4 @@
-// Rows of masks as bits, one a pixel: where values change, and where there are any.
+// Rows of masks as one bit per pixel: where values change, and where they are not 0.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +11,20 @@
 
 namespace trapeze {
 
-/// Words that hold a bit for every pixel of a row.
+/// The number of words with a bit for every pixel of a row.
 constexpr std::size_t words_for(std::size_t pixels) {
   return (pixels + 63) / 64;
 }
 
-/// A bit for each of eight bytes that is not 0, the lowest first.
+/// One bit for each of eight bytes, set if the byte is not 0, the lowest byte first.
 [[gnu::always_inline]] inline std::uint8_t set_bytes(std::uint64_t bytes) {
   constexpr std::uint64_t kLow = 0x7f7f7f7f7f7f7f7f;
   const std::uint64_t highest = (((bytes & kLow) + kLow) | bytes) & ~kLow;
   return static_cast<std::uint8_t>(((highest >> 7) * 0x0102040810204080) >> 56);
 }
 
-/// Sets the bits of the pixels from `begin` up to the one before `end`, and clears no bit.
-/// Precondition: begin < end.
+/// Sets the bits of the pixels from `begin` to `end` - 1, and clears none. Precondition: begin <
+/// end.
 inline void set_bits(std::size_t begin, std::size_t end, std::span<std::uint64_t> bits) {
   constexpr std::uint64_t kAll = ~std::uint64_t{0};
   const std::size_t first = begin / 64;
@@ -41,7 +41,7 @@ inline void set_bits(std::size_t begin, std::size_t end, std::span<std::uint64_t
   bits[last] |= to_end;
 }
 
-/// Calls act(i) for every bit that is set, in order.
+/// Calls act(i) for every set bit, in order.
 template <typename Act>
 void for_each_bit(std::span<const std::uint64_t> bits, const Act& act) {
   for (std::size_t word = 0; word < bits.size(); ++word) {
@@ -51,7 +51,7 @@ void for_each_bit(std::span<const std::uint64_t> bits, const Act& act) {
   }
 }
 
-/// Calls act(begin, end) for every run of bits that are set, among the first `count`.
+/// Calls act(begin, end) for every run of set bits among the first `count`.
 template <typename Act>
 void for_each_run_of_bits(std::span<const std::uint64_t> bits, std::size_t count, const Act& act) {
   const auto next = [&](std::size_t from, std::uint64_t flip) {
@@ -71,15 +71,15 @@ void for_each_run_of_bits(std::span<const std::uint64_t> bits, std::size_t count
   }
 }
 
-/// Sets the bits of pixels whose value differs from that of the pixel to their left, and clears no
-/// bit. Precondition: `bits` has words_for() the pixels of the row.
+/// Sets the bits of pixels whose value differs from that of the pixel to their left, and clears
+/// none. Precondition: `bits` has words_for() the pixels of the row.
 void mark_changes(std::span<const MaskRun> row, std::span<std::uint64_t> bits);
 
-/// The same, of the pixels whose value is not 0.
+/// The same for pixels whose value is not 0.
 void mark_covered(std::span<const MaskRun> row, std::span<std::uint64_t> bits);
 
-/// The same, of the pixels that are covered in part: whose value is neither 0 nor 255. Whether
-/// there are any.
+/// The same for partially covered pixels, whose value is neither 0 nor 255. Returns whether there
+/// are any.
 bool mark_partial(std::span<const MaskRun> row, std::span<std::uint64_t> bits);
 
 }  // namespace trapeze

@@ -1,11 +1,11 @@
-// How long the steps of a picture take.
+// Measures the time that the steps of a picture take.
 #pragma once
 
 #include <chrono>
 
 namespace trapeze {
 
-/// Adds the time from its making to its end to a sum.
+/// Adds the time from its construction to its destruction to a sum.
 class Stopwatch {
  public:
   using Clock = std::chrono::steady_clock;

@@ -12,19 +12,20 @@ namespace trapeze {
 namespace {
 
 constexpr double kMiterLimit = 4;
-constexpr std::uint16_t kMostMet = 3;  // more are no different
-// Lines extend beyond their ends by so many pixels, so that smaller openings at joins need no join.
+constexpr std::uint16_t kMostMet = 3;  // a greater number makes no difference
+// Lines extend beyond their ends by this many pixels, so that joins with smaller openings need no
+// drawing.
 constexpr double kOverlap = 1.0 / 32;
-constexpr double kMergedParts = 32;  // of a pixel: the grid of ends that are merged
-// Half of the width from which the nearest edge is found for all pixels.
+constexpr double kMergedParts = 32;  // of a pixel: the grid for the ends of merged lines
+// Half of the line width from which on the nearest edge is found for all pixels.
 constexpr double kLeastHalfOfNearest = 2;
-// Patterns of dashes that repeat within fewer pixels cannot be told from a tint.
+// Dash patterns that repeat within fewer pixels look like a tint.
 constexpr double kLeastPeriod = 1.0 / 8;
-constexpr double kLeastRate = 1.0 / 16;  // of the growth along a line, as dashes have it
-constexpr int kBlock = 4;                // columns that are drawn at once
+constexpr double kLeastRate = 1.0 / 16;  // of the growth of a dashed line
+constexpr int kBlock = 4;                // columns drawn at the same time
 constexpr std::size_t kMostBandPixels = std::size_t{1} << 21;
 
-// Pixels side by side, by the vector extensions of g++ and clang.
+// Adjacent pixels, using the vector extensions of g++ and clang.
 using Floats __attribute__((vector_size(kBlock * sizeof(float)))) = float;
 using Ints __attribute__((vector_size(kBlock * sizeof(std::int32_t)))) = std::int32_t;
 using Shorts __attribute__((vector_size(kBlock * sizeof(std::int16_t)))) = std::int16_t;
@@ -43,7 +44,7 @@ struct Columns {
   bool is_empty() const { return begin == end; }
 };
 
-/// The columns whose centres lie between two places, within a picture.
+/// The columns whose centres are between two positions, within a picture.
 Columns columns_between(double min, double max, int width) {
   const double first = std::min(std::max(min - 0.5, 0.0), static_cast<double>(width));
   const double last = std::min(std::max(max - 0.5, -1.0), static_cast<double>(width - 1));
@@ -52,9 +53,9 @@ Columns columns_between(double min, double max, int width) {
   return {begin, std::max(begin, end)};
 }
 
-/// Of what is between `from` and `to` for factor * x + offset; solved for x.
+/// Solves from <= factor * x + offset <= to for x.
 struct Slab {
-  double inverse = 0;  // of the factor; 0 if that is none
+  double inverse = 0;  // of the factor; 0 if that is 0
   double from = 0;
   double to = 0;
 
@@ -73,7 +74,7 @@ struct Slab {
   }
 };
 
-/// Tells a place from others, but for one chance in 2^64 with each.
+/// Identifies a place, except for a probability of 2^-64 for each pair of places.
 std::uint64_t number_of(const PicturePlace& place) {
   const auto x = std::bit_cast<std::uint64_t>(place.x);
   const auto y = std::bit_cast<std::uint64_t>(place.y);
@@ -101,7 +102,7 @@ double Stroke::reach(double scale) const {
 
 std::uint64_t Stroke::most_values(std::uint64_t edges, const View& view, double scale) const {
   const double pixels = static_cast<double>(view.width) * view.height;
-  // A line as long as it is wide, and a join at either end.
+  // A line as long as it is wide, and a join at each end.
   const auto around_edges = [edges](double half) {
     return static_cast<double>(edges) * 3 * (2 * half + 1) * (2 * half + 1);
   };
@@ -174,7 +175,7 @@ class Stroker::Pen {
     }
   }
 
-  // Its ends are cut off at right angles.
+  // The ends are cut off at right angles.
   void draw_line(const Line& line) {
     const double top = std::min(line.from.y, line.to.y) - reach();
     const double bottom = std::max(line.from.y, line.to.y) + reach();
@@ -191,7 +192,7 @@ class Stroker::Pen {
     }
   }
 
-  // Round what is nearest to the beginning of a line that nothing or too much is joined to.
+  // A round dot at the beginning of a line to which nothing or too much is joined.
   void draw_dot(const Line& line) {
     const float ink = line.ink * dash_share(line, 0);
     for_each_pixel_around(line.from, reach(), [&](double x, double y) {
@@ -199,7 +200,7 @@ class Stroker::Pen {
     });
   }
 
-  // Of `in`, which ends there, and `out`, which begins there.
+  // Between `in`, which ends there, and `out`, which begins there.
   void draw_join(const Line& in, const Line& out) {
     const double cosine = std::clamp(in.dx * out.dx + in.dy * out.dy, -1.0, 1.0);
     const double opening = std::abs(in.dx * out.dy - in.dy * out.dx) * reach();
@@ -216,13 +217,13 @@ class Stroker::Pen {
     });
   }
 
-  // The share of a pixel at that distance from the middle of the line that the line covers: of
-  // those that lie on it, no more than there is of a line thinner than a pixel.
+  // The share of a pixel at that distance from the middle of the line that is covered by the line;
+  // at most the width of a line thinner than a pixel.
   float across(float distance) const {
     return std::min(std::max(static_cast<float>(reach()) - distance, 0.0f), most_);
   }
 
-  // The share of the pixel around the place so far along the line that dashes cover.
+  // The share of a pixel, at that distance along the line, that is covered by dashes.
   float dash_share(const Line& line, double distance) const {
     if (dashes_.empty()) return 1;
     if (period_ < kLeastPeriod) return static_cast<float>(inked_ / period_);
@@ -248,7 +249,7 @@ class Stroker::Pen {
     return std::max(std::abs(line.rate), kLeastRate) / 2;
   }
 
-  // The length of the dashes between the beginning of the outline and a place along it.
+  // The total length of dashes from the beginning of the outline up to a position along it.
   double inked_up_to(double along) const {
     const double periods = std::floor(along / period_);
     const double rest = along - periods * period_;
@@ -258,7 +259,7 @@ class Stroker::Pen {
     return inked;
   }
 
-  // The distance from a vertex of a place near it, as the join has it.
+  // The distance of a nearby place from a vertex, as defined by the join.
   double distance(LineJoin join, const Line& in, const Line& out, double half_cosine, double x,
                   double y) const {
     if (join == LineJoin::miter) {
@@ -271,7 +272,7 @@ class Stroker::Pen {
     return (x * bisector_x + y * bisector_y) / length + half_ * (1 - half_cosine);
   }
 
-  // A line with round ends, and what is the same for all blocks of pixels.
+  // A line with round ends, with values that are the same for all blocks of pixels.
   struct RoundLine {
     RoundLine(const Line& of, const Pen& pen)
         : line(of),
@@ -289,19 +290,18 @@ class Stroker::Pen {
     Floats reach;
     Floats most;
     Floats ink_255;
-    // Of dashes.
+    // For dashes.
     Floats rate;
     Floats half_pixel;
   };
-  // How far pixels of a block are before the line and behind it; negative where they are not.
+  // How far pixels of a block are before the line and behind it; negative if they are not.
   struct Beyond {
     Floats before;
     Floats behind;
   };
 
-  // Columns as they are drawn, which are at least one. What is not near the line gets nothing: so
-  // whole blocks are drawn, wherever they begin; of the last one, what lies beyond the columns may
-  // be written too.
+  // The columns to draw, at least one. Pixels away from the line get 0, so whole blocks can be
+  // drawn, wherever they begin; the last block may also write beyond the columns.
   struct Blocks {
     Blocks(Columns of, const Canvas& canvas)
         : columns(of),
@@ -310,7 +310,7 @@ class Stroker::Pen {
                                  std::min(of.end + kBlock, canvas.width()))) {}
 
     Columns columns;
-    int last;  // column where a block may begin
+    int last;  // last column where a block may begin
     std::uint64_t touched;
   };
 
@@ -325,7 +325,7 @@ class Stroker::Pen {
     for (int block = columns.begin; block < columns.end; block += kBlock) {
       const int begin = std::min(block, blocks.last);
       const double x = begin + 0.5 - line.from.x;
-      // Of the first pixel: how far along the line it is.
+      // The position of the first pixel along the line.
       const double along = x * line.dx + along_of_row;
       const Beyond beyond{static_cast<float>(-along) - round.steps_along,
                           static_cast<float>(along - line.length) + round.steps_along};
@@ -336,7 +336,7 @@ class Stroker::Pen {
     }
   }
 
-  // Of pixels side by side, the first of which is so far beside the line; up to 255.
+  // For adjacent pixels, the first of which has that distance from the line; up to 255.
   static Floats values_of_block(const RoundLine& round, const Beyond& beyond, double beside) {
     constexpr Floats kNone{};
     const Floats outside = beyond.before > beyond.behind ? beyond.before : beyond.behind;
@@ -347,7 +347,7 @@ class Stroker::Pen {
     return round.ink_255 * (share < round.most ? share : round.most);
   }
 
-  // Of values that are not negative.
+  // For non-negative values.
   static bool are_none(Floats values) {
     std::uint64_t bits[2];
     static_assert(sizeof bits == sizeof values);
@@ -361,11 +361,12 @@ class Stroker::Pen {
     return roots;
   }
 
-  // The same of dash_share(), for pixels side by side, the first of which is so far along the line.
+  // The same as dash_share(), for adjacent pixels, the first of which is at that position along the
+  // line.
   Floats dash_shares(const RoundLine& round, double along, const Beyond& beyond) const {
     constexpr Floats kNone{};
     if (period_ < kLeastPeriod) return kNone + static_cast<float>(inked_ / period_);
-    // Numbers stay small if they are counted from the period in which the first pixel lies.
+    // Counted from the period that contains the first pixel, numbers stay small.
     const double place = round.line.along + along * round.line.rate;
     const double first = place - std::floor(place / period_) * period_;
     const Floats on_line = round.steps_along + (beyond.before > kNone ? beyond.before : kNone) -
@@ -439,11 +440,11 @@ class Stroker::Pen {
   }
 
   const double half_;
-  const float most_;  // that the line covers of a pixel
+  const float most_;  // maximum coverage of a pixel by the line
   const LineJoin join_;
   std::vector<Dash> dashes_;  // of one period; empty: no gaps
   double period_ = 0;
-  double inked_ = 0;  // length of the dashes of a period
+  double inked_ = 0;  // total length of dashes in a period
   // The same for blocks of pixels.
   std::vector<DashOfBlocks> dashes_of_blocks_;
   Floats period_of_blocks_{};
@@ -469,7 +470,7 @@ void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge>
   Pen pen(stroke, scale_, canvas_);
   const double most = static_cast<double>(kCrowd) * view_.width * view_.height;
   const bool is_crowded = most_values_of_lines(pen) > most && values_of_lines(pen) > most;
-  // One by one, lines with round ends may come in any order.
+  // Drawn one by one, lines with round ends may be in any order.
   if (is_crowded || !pen.has_round_ends()) sort_lines();
   if (is_crowded) merge_lines();
   if (cancellation != nullptr) cancellation->check();
@@ -496,7 +497,7 @@ void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEd
     const Line line{
         {}, {}, 0, 0, 0, edge.along * columns_per_cell, edge.rate, static_cast<float>(edge.ink)};
     lines_.push_back(line.between(place_of(edge.from), place_of(edge.to)));
-    if (view_.stretch != 1) {  // `along` grows by cells, whatever a pixel has of them here
+    if (view_.stretch != 1) {  // `along` is in cells, whose number per pixel varies here
       const Point from = vertices[edge.from];
       const Point to = vertices[edge.to];
       const double cells =
@@ -548,15 +549,15 @@ double Stroker::values_of_lines(const Pen& pen) const {
   return values;
 }
 
-// Moves the ends to a grid, which no eye can see; lines without length vanish, and of equal ones
-// the first one of the most ink stays.
+// Snaps the ends to a grid, which is not visible. Lines without length are removed, and among equal
+// lines only the first one with the most ink is kept.
 void Stroker::merge_lines() {
   const auto moved = [](PicturePlace place) {
-    // Sums with 0 have no negative zeros, whose bits are different.
+    // Adding 0 removes negative zeros, whose bits are different.
     return PicturePlace{std::round(place.x * kMergedParts) / kMergedParts + 0.0,
                         std::round(place.y * kMergedParts) / kMergedParts + 0.0};
   };
-  // What tells lines apart, what comes first of equal ones, and the line.
+  // The key of a line, the order among equal lines, and the line.
   std::vector<std::tuple<std::uint64_t, float, std::uint32_t>> order;
   for (std::uint32_t i = 0; i < lines_.size(); ++i) {
     const Line& line = lines_[i];
@@ -627,12 +628,12 @@ void Stroker::meet(std::uint64_t place, std::uint32_t line, bool is_end, Pen& pe
   }
 }
 
-// The line in the direction that leads away from its end or from its beginning.
+// The line, directed away from its end or from its beginning.
 Stroker::Line Stroker::leaving(std::uint32_t line, bool is_end) const {
   return is_end ? lines_[line].turned() : lines_[line];
 }
 
-// In bands of rows, so that memory is bounded.
+// In bands of rows, to bound memory.
 void Stroker::draw_nearest(const Pen& pen, const Cancellation* cancellation) {
   values_ = 0;
   CancellationCheck check(cancellation, 1024);

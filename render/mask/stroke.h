@@ -1,20 +1,21 @@
 // Outlines: lines along the edges of polygons, drawn by distance from the edge.
 //
-// The value of a pixel is that share of a segment one pixel long, across the line and centred on
-// the pixel, that lies within the width of the line, times the share of ink that the edge is given;
-// where several edges are near, the greatest value counts. So a line is no darker where edges meet.
-// Outlines are always drawn on the CPU, and are the same whichever renderer draws the fill. They do
+// The value of a pixel is the share of a segment one pixel long, across the line and centred on the
+// pixel, that is within the width of the line, times the share of ink given for the edge; if
+// several edges are near, the greatest value counts. So a line is not darker where edges meet.
+// Outlines are always drawn on the CPU, and are the same with any renderer for the fill. They do
 // not depend on the order of the edges.
 //
 // The outline of a ring that is hardly larger than the line is wide would be a dot as wide as the
-// line, and thousands of such rings a black map: its ink is to be given by Stroke::ink_of_ring().
+// line, and thousands of such rings would make the map black. Its ink should therefore be set with
+// Stroke::ink_of_ring().
 //
-// What a picture costs is bounded by its pixels and the length of its outlines, and not by the
-// width of its lines: where lines are so crowded that kCrowd values would be computed for every
-// pixel, their ends are moved to a grid of 1/32 pixel, which leaves out the shortest edges, and
-// equal ones are drawn once. If that does not suffice, lines of four pixels and wider are drawn by
-// the nearest edge of every pixel: their ends and joins are round then, and where outlines lie upon
-// each other the dashes of the nearest one are seen.
+// The cost of a picture is bounded by its pixels and the length of its outlines, and does not
+// depend on the width of its lines. If lines are so crowded that more than kCrowd values per pixel
+// would be computed, their ends are snapped to a grid of 1/32 pixel, which removes the shortest
+// edges, and equal lines are drawn once. If that is not sufficient, lines of four pixels and wider
+// are drawn by the nearest edge of every pixel: their ends and joins are then round, and where
+// outlines overlap, the dashes of the nearest one are visible.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +44,7 @@ inline constexpr NameTable<LineJoin, 3> kLineJoinNames({
 struct Stroke {
   double width = 0;  // 0: no line
   std::vector<double>
-      dashes;  // lengths of a dash, a gap, a dash, ...; an even number of them; empty: solid
+      dashes;  // lengths of a dash, a gap, a dash, ...; an even number; empty: solid
   LineJoin join = LineJoin::round;  // miters of more than four times the width are bevelled
 
   /// Whether the line has gaps.
@@ -51,46 +52,47 @@ struct Stroke {
   /// The greatest distance from the edge at which the line covers anything, in pixels of a picture
   /// of that scale.
   double reach(double scale) const;
-  /// The share of ink for the outline of a ring that has the area of a circle of that diameter
-  /// (pixels of a picture of scale 1): 1 from kFullExtent times the width of the line on, and less
-  /// in proportion below. So the outline of a small circle has as much ink as the circle would have
-  /// if it were filled: its area.
+  /// The share of ink for the outline of a ring with the area of a circle of that diameter (pixels
+  /// of a picture of scale 1): 1 from kFullExtent times the width of the line on, and
+  /// proportionally less below. So the outline of a small circle has as much ink as the filled
+  /// circle, which is its area.
   double ink_of_ring(double extent) const;
   static constexpr double kFullExtent = 4;
-  /// About how many values of pixels are computed at most for lines along so many edges that are
-  /// not longer than wide, in a picture of that view and scale. Never less for more edges, or for
-  /// wider lines.
+  /// The approximate maximum of pixel values computed for lines along that many edges that are not
+  /// longer than wide, in a picture of that view and scale. Never less for more edges or wider
+  /// lines.
   std::uint64_t most_values(std::uint64_t edges, const View& view, double scale) const;
 
   friend bool operator==(const Stroke&, const Stroke&) = default;
 };
 
-/// An edge along which a line is drawn; its ends are different points.
+/// An edge to draw a line along; its ends must be different points.
 struct OutlineEdge {
   std::uint32_t from = 0;  // index of a vertex
   std::uint32_t to = 0;    // index of a vertex
-  double along = 0;        // length of the outline up to `from`, in cells: where its dashes begin
-  double rate = 1;         // by how much `along` grows from cell to cell of the edge
-  double ink = 1;          // from 0 to 1: what its values are multiplied by
+  double along = 0;        // length of the outline up to `from`, in cells; positions the dashes
+  double rate = 1;         // growth of `along` per cell of the edge
+  double ink = 1;          // from 0 to 1: a factor for its values
 };
 
-/// Draws outlines, with working memory that it keeps from one mask to the next. One thread at a
-/// time may use it.
+/// Draws outlines, with working memory that is kept from one mask to the next. One thread at a
+/// time.
 class Stroker {
  public:
-  /// Values that are computed for a pixel, on average, before a picture counts as crowded.
+  /// The average number of values computed per pixel above which a picture counts as crowded.
   static constexpr std::uint64_t kCrowd = 64;
 
-  /// Begins a picture of that view and scale, without lines.
+  /// Starts a picture of that view and scale, without lines.
   void begin(const View& view, double scale);
-  /// Draws lines along the edges: each value becomes the greater of what it was and what the lines
-  /// cover. No edge is given twice; edges that share a vertex are joined there. Throws Cancelled.
+  /// Draws lines along the edges: each value becomes the greater of its previous value and the
+  /// coverage by the lines. Each edge must be given only once; edges that share a vertex are joined
+  /// there. Throws Cancelled.
   void draw(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
             const Stroke& stroke, const Cancellation* cancellation = nullptr);
-  /// The picture, which ends with that.
+  /// Finishes the picture.
   void finish(Mask& mask);
 
-  /// The work of the last draw(): values of pixels that were computed, and steps of OutlineField.
+  /// The work of the last draw(): pixel values computed, and steps of OutlineField.
   std::uint64_t values() const { return values_; }
 
  private:
@@ -102,14 +104,14 @@ class Stroker {
     double dy;
     double length;
     double along;  // at `from`
-    double rate;   // from pixel to pixel
+    double rate;   // per pixel
     float ink;
 
     Line turned() const;
-    /// The same between other ends.
+    /// The same line with other ends.
     Line between(PicturePlace new_from, PicturePlace new_to) const;
   };
-  // What tells the ends of a line from other places.
+  // Numbers that identify the ends of a line.
   struct Ends {
     std::uint64_t from;
     std::uint64_t to;
@@ -118,8 +120,8 @@ class Stroker {
   struct Meeting {
     std::uint64_t place = 0;
     std::uint32_t line = 0;   // the index of the first line
-    std::uint16_t count = 0;  // of lines found there
-    bool is_end = false;      // whether it is the end of the first line, or else its beginning
+    std::uint16_t count = 0;  // number of lines found there
+    bool is_end = false;      // whether it is the end of the first line, not its beginning
   };
   class Pen;
 

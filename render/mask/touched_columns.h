@@ -1,4 +1,4 @@
-// Which columns of the rows of a picture have been written, in blocks, 64 to a row.
+// Records which columns of the rows of a picture have been written, as 64 blocks per row.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace trapeze {
 
-/// Calls act(begin, end) for the columns of blocks whose bit is set, joined where they are side by
-/// side: bit b stands for the columns from b << shift on.
+/// Calls act(begin, end) for the columns of blocks whose bit is set, with adjacent blocks joined:
+/// bit b represents the columns from b << shift on.
 template <typename Act>
 void for_each_touched(std::uint64_t touched, unsigned shift, std::size_t columns, const Act& act) {
   const auto column_of = [&](int bit) {
@@ -27,24 +27,24 @@ void for_each_touched(std::uint64_t touched, unsigned shift, std::size_t columns
 
 class TouchedColumns {
  public:
-  /// Begins anew, with nothing touched.
+  /// Resets all rows to untouched.
   void assign(std::size_t columns, std::size_t rows) {
     by_row_.assign(rows, 0);
     shift_ = 3;
     while ((columns - 1) >> shift_ >= 64) ++shift_;
   }
-  /// The columns from `first` to `last`.
+  /// Marks the columns from `first` to `last`.
   void touch(std::size_t row, std::size_t first, std::size_t last) {
     touch(row, bits_of(first, last));
   }
-  /// The same for columns that are those of several rows.
+  /// The same for columns that several rows share.
   void touch(std::size_t row, std::uint64_t bits) { by_row_[row] |= bits; }
   std::uint64_t bits_of(std::size_t first, std::size_t last) const {
     const std::uint64_t from_first = ~std::uint64_t{0} << (first >> shift_);
     const std::uint64_t to_last = ~std::uint64_t{0} >> (63 - (last >> shift_));
     return from_first & to_last;
   }
-  /// The bits of a row, which are then cleared; see for_each_touched().
+  /// Returns the bits of a row and clears them; see for_each_touched().
   std::uint64_t take(std::size_t row) { return std::exchange(by_row_[row], 0); }
   unsigned shift() const { return shift_; }
 

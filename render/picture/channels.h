@@ -1,4 +1,4 @@
-// Colours as numbers that can be compared: premultiplied by their opacity, of 255.
+// Colours as comparable numbers: channels premultiplied by the opacity, 0 to 255.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,12 @@
 
 namespace trapeze {
 
-/// To the nearest whole number. Precondition: value >= 0, divisor > 0.
+/// Divides and rounds to the nearest integer. Precondition: value >= 0, divisor > 0.
 constexpr int divided(int value, int divisor) {
   return (2 * value + divisor) / (2 * divisor);
 }
 
-/// Each from 0 to 255, none of the colours greater than the opacity.
+/// Each from 0 to 255; no colour channel is greater than the opacity.
 struct Channels {
   int r = 0;
   int g = 0;
@@ -28,7 +28,7 @@ inline Channels channels_of(Rgba colour) {
   return {scaled(colour.r), scaled(colour.g), scaled(colour.b), colour.a};
 }
 
-/// The colour that channels_of() makes these of.
+/// The colour that channels_of() converts to these channels.
 inline Rgba straight(const Channels& channels) {
   const int a = channels.a;
   if (a == 0) return kTransparent;
@@ -38,9 +38,9 @@ inline Rgba straight(const Channels& channels) {
   return {scaled(channels.r), scaled(channels.g), scaled(channels.b), static_cast<std::uint8_t>(a)};
 }
 
-/// How far two colours are apart.
+/// The difference of two colours.
 struct Difference {
-  int most = 0;  // of a channel
+  int most = 0;  // of one channel
   int sum = 0;   // of all channels
 };
 

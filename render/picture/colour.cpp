@@ -13,7 +13,7 @@ struct NamedColour {
   std::uint32_t rgb;
 };
 
-// CSS Color Module Level 4, 6.1; in order of names.
+// CSS Color Module Level 4, 6.1; sorted by name.
 constexpr std::array<NamedColour, 148> kNamedColours{{
     {"aliceblue", 0xf0f8ff},
     {"antiquewhite", 0xfaebd7},
@@ -173,13 +173,13 @@ constexpr bool is_in_order() {
 }
 static_assert(is_in_order(), "names are found by halving");
 
-constexpr std::size_t kLongestText = 128;  // longer ones are no colours
+constexpr std::size_t kLongestText = 128;  // longer texts are not colours
 
 constexpr bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f';
 }
 
-// Letters of ASCII only, whatever the locale.
+// ASCII letters only, whatever the locale.
 constexpr char to_lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
 }
@@ -227,7 +227,7 @@ std::uint8_t to_channel(double share) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0, 1.0) * 255.0));
 }
 
-// Reads the arguments of rgb() one by one.
+// Parses the arguments of rgb() one by one.
 class Arguments {
  public:
   explicit Arguments(std::string_view text) : rest_(text) {}
@@ -250,7 +250,7 @@ class Arguments {
     return Number{value, take('%')};
   }
 
-  // Takes the character, and blanks around it, if it comes next.
+  // Consumes the character, with spaces around it, if it comes next.
   bool take_separator(char c) {
     const std::string_view before = rest_;
     skip_blanks();

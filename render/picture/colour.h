@@ -1,4 +1,4 @@
-// Colours as they are written in URLs, styles and configuration files.
+// Colours as written in URLs, styles and configuration files.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,15 @@ struct Rgba {
 
 constexpr Rgba kTransparent{0, 0, 0, 0};
 
-/// Reads a colour; nothing if the text is not one. Upper and lower case are equal. Accepted are
+/// Parses a colour; nothing if the text is not one. Ignores case. Accepts
 ///   rgb, rgba, rrggbb, rrggbbaa   hexadecimal, with or without # in front;
 ///   the 148 names of CSS, and transparent, or none;
-///   rgb(...) and rgba(...) of CSS: three numbers (0..255) or three percentages, then perhaps an
-///   opacity (0..1 or percent), separated by commas, or by blanks with a slash before the opacity.
-/// As in CSS, numbers may have fractions and those out of range are brought into it.
+///   rgb(...) and rgba(...) of CSS: three numbers (0..255) or three percentages, optionally an
+///   opacity (0..1 or percent), separated by commas, or by spaces with a slash before the opacity.
+/// As in CSS, numbers may have fractions, and numbers out of range are clamped.
 std::optional<Rgba> parse_colour(std::string_view text);
 
-/// rrggbbaa, lower case: equal colours have equal text, and parse_colour reads it back.
+/// rrggbbaa, lower case: equal colours have equal text, and parse_colour() parses it.
 std::string to_hex(Rgba colour);
 
 /// The colour with its opacity multiplied by `opacity`, 0..1, and rounded.

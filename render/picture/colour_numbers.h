@@ -1,4 +1,4 @@
-// Numbers of colours.
+// Numbers for colours.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline std::uint32_t bits_of(Rgba colour) {
   return std::bit_cast<std::uint32_t>(colour);
 }
 
-/// Colours, each once, in the order in which they were met.
+/// Distinct colours, in order of first occurrence.
 class ColourNumbers {
  public:
   void clear() {
@@ -26,7 +26,8 @@ class ColourNumbers {
     origins_.clear();
   }
 
-  /// From 0 on. Of several origins a colour keeps the first of the enumeration.
+  /// The number of the colour, from 0. If a colour has several origins, the first one in the
+  /// enumeration is kept.
   std::uint32_t number_of(Rgba colour, Origin origin) {
     std::uint32_t& number = numbers_.find(hash_of(colour), is_same);
     if (number == NumberTable::kNone) {
@@ -38,7 +39,7 @@ class ColourNumbers {
     return number;
   }
 
-  /// Of a colour that has been met; else NumberTable::kNone.
+  /// The number of a known colour; otherwise NumberTable::kNone.
   std::uint32_t look_up(Rgba colour) const { return numbers_.look_up(hash_of(colour), is_same); }
 
   std::size_t size() const { return colours_.size(); }
@@ -47,8 +48,8 @@ class ColourNumbers {
   const std::vector<Origin>& origins() const { return origins_; }
 
  private:
-  // No two colours have the same upper half, which is all that the table keeps of a hash: each step
-  // can be undone. So there is nothing left to compare.
+  // Each step is reversible, so no two colours have the same upper half of the hash, which is all
+  // that the table stores. There is nothing left to compare.
   static std::uint64_t hash_of(Rgba colour) {
     std::uint32_t bits = bits_of(colour);
     bits = (bits ^ bits >> 16) * 0x7feb352d;

@@ -6,8 +6,8 @@
 namespace trapeze {
 namespace {
 
-// With more than so many colours, along edges and in the lattice, no other way gets them into a
-// palette: none is tried, for it takes time.
+// With more colours than this, along edges and in the lattice, the more expensive method cannot fit
+// them into a palette either, so it is not tried.
 constexpr std::size_t kMostToGather = 2 * kPaletteColours;
 
 }  // namespace
@@ -32,13 +32,14 @@ void Composer::compose(std::span<const PaintedLayer> layers, int width, int heig
   write(picture);
   const std::size_t colours = picture.colours.size();
   if (colours <= kPaletteColours || colours > kMostToGather) return;
-  // Steps along edges take much of a palette: colours that are close to each other in this picture
-  // may take less.
+  // Steps along edges use much of a palette: colours that are close to each other in this picture
+  // may need less.
   const bool is_within = colour(0, kMostChange) <= most;
   if (is_within && reducer_.colours().size() <= kPaletteColours) write(picture);
 }
 
-// Chooses colours; the sum of the changes of all channels of all pixels that are on no edge.
+// Computes the colours; returns the sum of the changes of all channels of all pixels that are not
+// on an edge.
 double Composer::colour(int along_edges, int of_others) {
   mixture_colours_.colour(along_edges);
   return static_cast<double>(reducer_.reduce(mixture_colours_.colours(), mixture_colours_.origins(),

@@ -1,12 +1,12 @@
-// From masks and colours to a picture.
+// Composes masks and colours into a picture.
 //
-// Composition is "source over" in sRGB values, as browsers do it, in floating point, rounded once.
-// Classes of one layer are summed by area instead, so that neighbours leave no line between them.
+// Composition is "source over" in sRGB values, as in browsers, in floating point, rounded once.
+// Classes of one layer are summed by area instead, so that no line appears between neighbours.
 //
-// Of layers it is kept apart how much of a pixel they cover, and how opaque they are. Where nothing
-// is known of how two layers lie in a pixel, the upper one covers as much of the lower one as it
-// covers of the pixel, which is "source over"; where it is known, see Meeting, what lies side by
-// side is summed, and what lies beneath is hidden.
+// For layers, the covered area of a pixel and the opacity are treated separately. If nothing is
+// known about the relation of two layers in a pixel, the upper one covers the same share of the
+// lower one as of the pixel, which is "source over". If it is known, see Meeting, areas side by
+// side are summed, and areas beneath are hidden.
 #pragma once
 
 #include <span>
@@ -20,22 +20,22 @@
 
 namespace trapeze {
 
-/// Paints pictures one after the other, with working memory for reuse.
+/// Paints pictures one after the other, with reused working memory.
 ///
-/// Colours are computed once for all runs of pixels that show the same values of the same masks, so
-/// the cost grows with the boundaries in a picture and hardly with its pixels.
+/// Colours are computed once for all runs of pixels with the same values of the same masks, so the
+/// cost depends on the boundaries in a picture and hardly on its pixels.
 ///
 /// Thread-safety: one thread at a time.
 class Composer {
  public:
-  /// Paints the layers over the background, the first one lowest (painter's order). The picture
-  /// becomes width x height pixels, both at least 1, and every colour of it is of some pixel.
-  /// Throws std::invalid_argument if a mask is not of that size.
+  /// Paints the layers over the background, the first one lowest (painter's order). The picture is
+  /// resized to width x height pixels, both at least 1, and every colour in its table is used by
+  /// some pixel. Throws std::invalid_argument if a mask has another size.
   ///
-  /// Of bounded quality, no channel is further than kMostChange from the exact picture, and all of
-  /// them not more than kMostMeanChange in the mean. Colours along edges are then even steps from
-  /// one side to the other, and so the same in all tiles that need no finer ones. For others see
-  /// ColourReducer.
+  /// With bounded quality, no channel differs from the exact picture by more than kMostChange, and
+  /// the mean over all channels is at most kMostMeanChange. Colours along edges are then in even
+  /// steps from one side to the other, and therefore the same in all tiles that need no finer ones.
+  /// For other colours see ColourReducer.
   void compose(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
                Quality quality, RunPicture& picture);
 

@@ -22,7 +22,7 @@ Position position_of(Point p, const View& view) {
           view.row_from_y(static_cast<double>(p.y))};
 }
 
-/// Clips the segment to the picture and a pixel around it; false if nothing is left.
+/// Clips the segment to the picture with a margin of one pixel; false if nothing is left.
 bool clip(Position& a, Position& b, const Picture& picture) {
   double from = 0;
   double to = 1;
@@ -48,7 +48,7 @@ bool clip(Position& a, Position& b, const Picture& picture) {
   return true;
 }
 
-/// A line one pixel wide: at every step along its longer side, two pixels share it.
+/// A line one pixel wide: at every step along its longer side, it is shared by two pixels.
 void draw_line(Position a, Position b, Rgba colour, Picture& picture) {
   if (!clip(a, b, picture)) return;
   const bool is_steep = std::abs(b.y - a.y) > std::abs(b.x - a.x);
@@ -92,8 +92,8 @@ void for_each(std::span<const TrapezoidRange> ranges, const MeshView& mesh, cons
 
 constexpr std::uint8_t kTintOpacity = 190;
 
-/// Around the circle of hues in steps of the golden section, so that numbers that follow each other
-/// are far apart and none comes back soon; light and dark in turn.
+/// Hues in steps of the golden section around the circle, so that consecutive numbers have very
+/// different hues and none recurs soon; alternately light and dark.
 Rgba tint_of(std::uint32_t feature) {
   constexpr double kGoldenSection = 0.6180339887498949;
   const double hue = 6 * std::fmod(feature * kGoldenSection, 1.0);
@@ -107,7 +107,7 @@ Rgba tint_of(std::uint32_t feature) {
   return {channel(0), channel(2), channel(4), kTintOpacity};
 }
 
-/// Colours of a row of pixels, premultiplied, and how much of each pixel they cover.
+/// Premultiplied colours of a row of pixels, with the coverage of each pixel.
 struct Tinted {
   double r = 0;
   double g = 0;
@@ -115,8 +115,8 @@ struct Tinted {
   double share = 0;
 };
 
-/// Sums up tints in proportion to the areas that they cover: exact along a row, of which there are
-/// several to a pixel.
+/// Sums tints in proportion to the areas that they cover: exact along scan lines, of which there
+/// are several per pixel.
 class TintSum {
  public:
   explicit TintSum(const Picture& picture)
@@ -126,7 +126,7 @@ class TintSum {
     const Position top = position_of(mesh.vertices[t.top], view);
     const Position bottom = position_of(mesh.vertices[t.bottom], view);
     const double rows = static_cast<double>(height_) * kRowsPerPixel;
-    // Rows whose middles lie between top and bottom.
+    // Scan lines whose middles are between top and bottom.
     const auto first = std::clamp(std::ceil(top.y * kRowsPerPixel - 0.5), 0.0, rows);
     const auto end = std::clamp(std::ceil(bottom.y * kRowsPerPixel - 0.5), 0.0, rows);
     for (int row = static_cast<int>(first); row < static_cast<int>(end); ++row) {
@@ -190,7 +190,7 @@ void sort_and_unite(Pairs& pairs) {
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-/// Calls visit(number, pairs of it) for every number there is. The pairs are in order.
+/// Calls visit(number, its pairs) for every number. The pairs must be sorted.
 template <class Visit>
 void for_each_number(const Pairs& pairs, const Visit& visit) {
   for (auto begin = pairs.begin(); begin != pairs.end();) {
@@ -201,8 +201,8 @@ void for_each_number(const Pairs& pairs, const Visit& visit) {
   }
 }
 
-/// The vertices, ascending, around which lie three or more features. Different features lie on both
-/// sides of every edge; where only one was met, the other side is outside.
+/// The vertices, ascending, where three or more features meet. Every edge has different features on
+/// its two sides; if only one was found, the other side is outside.
 std::vector<std::uint32_t> junctions_of(const MeshView& mesh, Pairs features_by_edge) {
   constexpr std::uint32_t kOutsideOfAll = 0xffffffff;
   sort_and_unite(features_by_edge);

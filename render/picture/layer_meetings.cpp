@@ -11,14 +11,14 @@ namespace trapeze {
 namespace {
 
 constexpr int kAll = 255;
-// Layers that fill a pixel together by chance are hardly ever as alike around it.
+// Layers that fill a pixel together by chance rarely correlate this much around it.
 constexpr double kLeastOfNested = 0.5;
 
 bool is_partial(std::uint8_t value) {
   return value != 0 && value != kAll;
 }
 
-// In as few steps as differences can be seen in, so that few colours come of it.
+// In as few steps as are visible, so that few colours result.
 std::int8_t to_relation(double correlation) {
   constexpr int kSteps = 7;
   return static_cast<std::int8_t>(std::lround(correlation * kSteps) * (Meeting::kNested / kSteps));
@@ -29,13 +29,14 @@ std::uint8_t to_gap(double share) {
   return static_cast<std::uint8_t>(std::lround(share * kSteps) * (kAll / kSteps));
 }
 
-/// Whether what two layers leave out of a pixel is no more than what was lost in rounding.
+/// Whether the part of a pixel that two layers leave uncovered is within rounding error.
 bool is_whole(int below, int above) {
   return std::abs(below + above - kAll) <= 2;
 }
 
-/// How much of what two layers leave out, as a share, lies between them only because their borders
-/// were simplified, if they lie side by side: what is wider than twice the tolerance does not.
+/// The share of the area left uncovered by two layers that is between them only because their
+/// borders were simplified, if they are side by side. Anything wider than twice the tolerance is
+/// not.
 double gap_between(int below, int above, double tolerance) {
   const double left = std::max(0, kAll - below - above) / double{kAll};
   if (tolerance <= 0) return 0;
@@ -73,7 +74,7 @@ void LayerMeetings::find(std::span<PaintedLayer> layers, std::span<const double>
     tolerance = std::max(tolerance, tolerances[k]);
     const bool is_full = std::ranges::any_of(
         layers[k].classes, [](const PaintedClass& one) { return one.mask == nullptr; });
-    if (is_full) return;  // there is nothing that others could have in part
+    if (is_full) return;  // no layer above can partly cover a pixel
     const Mask* above = cover_of(layers[k]);
     if (above == nullptr) continue;
     if (below != nullptr) {
@@ -95,7 +96,7 @@ void LayerMeetings::find(std::span<PaintedLayer> layers, std::span<const double>
   }
 }
 
-/// Of its classes together; null if there are none.
+/// The mask of all its classes together; null if there are none.
 const Mask* LayerMeetings::cover_of(const PaintedLayer& layer) {
   const Mask* cover = nullptr;
   for (const PaintedClass& one : layer.classes) {
@@ -118,7 +119,7 @@ const Mask* LayerMeetings::cover_of(const PaintedLayer& layer) {
   return cover;
 }
 
-// In few places both have a part of a pixel.
+// Few pixels are partly covered by both.
 void LayerMeetings::find_contested(const Mask& below, const Mask& above) {
   contested_.clear();
   below_.begin(below);
@@ -159,8 +160,8 @@ void LayerMeetings::meet(double tolerance, std::vector<Meeting>& meetings) {
   }
 }
 
-/// Of how much the two cover of the pixel and those around it, from -1 to 1; 0 if one of them is
-/// the same in all.
+/// The correlation of the coverages of the pixel and those around it by the two layers, from -1 to
+/// 1; 0 if one of them is constant there.
 double LayerMeetings::correlation_around(int column, int row) const {
   const int west = std::max(column - 1, 0);
   const int east = std::min(column + 1, width_ - 1);
@@ -207,7 +208,7 @@ void LayerMeetings::add_to_union(const Mask& below, const Mask& above,
     for_each_run_of_both(below.row(row), above.row(row),
                          [&](std::size_t end, std::uint8_t lower, std::uint8_t upper) {
                            if (!is_partial(lower) || !is_partial(upper)) {
-                             // Where one of the two is nothing or all, it is the greater one.
+                             // If one of the two is 0 or full, the union is the greater one.
                              next_.append(end, std::max(lower, upper));
                              pixel = first + end;
                            }

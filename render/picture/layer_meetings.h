@@ -1,9 +1,10 @@
-// How the layers of a picture lie in relation to each other within pixels that several of them
-// cover in part: side by side, as land and water along a coast do, or one on the other.
+// Determines the relation of the layers of a picture within pixels that several of them partly
+// cover: side by side, like land and water along a coast, or one on top of the other.
 //
-// That is told by the pixels around: where one layer covers more of them the less the other does,
-// they lie side by side; where both cover more or less together, one lies on the other. So it is
-// exact where two layers share a border, whatever its shape, and for dust as for polygons.
+// The relation is derived from the surrounding pixels: if one layer covers more of them where the
+// other one covers less, they are side by side; if both cover more or less together, one is on top
+// of the other. So it is exact where two layers share a border, whatever its shape, both for dust
+// and for polygons.
 #pragma once
 
 #include <array>
@@ -16,23 +17,22 @@
 
 namespace trapeze {
 
-/// Use for one picture after the other; holds what it found until the next one. One thread at a
+/// Use it for one picture after the other; results are kept until the next one. One thread at a
 /// time.
 class LayerMeetings {
  public:
   /// Sets the meetings of each layer with those below it, the first one lowest. `tolerances` are by
-  /// layer: how far its boundary may be from the true one, in pixels of the picture. The masks are
-  /// width x height. The layers look at memory of this object.
+  /// layer: the maximum distance of its boundary from the true one, in pixels of the picture. The
+  /// masks must be width x height. The layers then refer to memory of this object.
   void find(std::span<PaintedLayer> layers, std::span<const double> tolerances, int width,
             int height);
 
  private:
-  /// The values of the rows of a mask around one, pixel by pixel.
+  /// The values of a row of a mask and its neighbouring rows, pixel by pixel.
   class RowsAround {
    public:
     void begin(const Mask& mask);
-    /// Then those of the row, the one above it and the one below it, as far as there are such, may
-    /// be asked for.
+    /// Makes available the row, the one above it and the one below it, as far as they exist.
     void move_to(int row);
     const std::uint8_t* row(int row) const { return values_.data() + slot_of(row) * stride_; }
 
@@ -42,7 +42,7 @@ class LayerMeetings {
 
     const Mask* mask_ = nullptr;
     std::size_t stride_ = 0;
-    std::array<int, kRows> rows_{};  // that the slots have
+    std::array<int, kRows> rows_{};  // rows in the slots
     std::vector<std::uint8_t> values_;
   };
 
@@ -54,14 +54,14 @@ class LayerMeetings {
 
   int width_ = 0;
   int height_ = 0;
-  std::vector<std::uint64_t> partial_below_;  // a bit for each pixel of a row
+  std::vector<std::uint64_t> partial_below_;  // one bit per pixel of a row
   std::vector<std::uint64_t> partial_above_;
   std::vector<std::uint32_t> contested_;  // row * width + column
   RowsAround below_;
   RowsAround above_;
-  Mask sum_;    // of the classes of a layer
-  Mask union_;  // of the layers so far, where it is not that of a mask
-  Mask next_;   // what sum_ or union_ becomes
+  Mask sum_;                                    // of the classes of a layer
+  Mask union_;                                  // of the layers so far, unless it equals a mask
+  Mask next_;                                   // next value of sum_ or union_
   std::vector<std::vector<Meeting>> meetings_;  // by layer
 };
 

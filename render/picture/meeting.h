@@ -1,4 +1,4 @@
-// How two layers share a pixel of which both cover a part.
+// The relation of two layers in a pixel that both partly cover.
 #pragma once
 
 #include <algorithm>
@@ -6,29 +6,29 @@
 
 namespace trapeze {
 
-/// How the classes of a layer lie in a pixel in relation to what the layers below it cover there,
-/// where both cover a part of it.
+/// The relation of the classes of a layer to the area covered by the layers below it, in a pixel
+/// that both partly cover.
 struct Meeting {
-  static constexpr std::int8_t kSideBySide = -126;  // they share as little area as they can
-  static constexpr std::int8_t kNested = 126;       // they share as much area as they can
+  static constexpr std::int8_t kSideBySide = -126;  // they overlap as little as possible
+  static constexpr std::int8_t kNested = 126;       // they overlap as much as possible
 
   std::uint32_t pixel = 0;   // row * width + column
-  std::int8_t relation = 0;  // between these two; 0: as much as chance has it
-  // How much of what neither of them covers lies between the two, and is covered by none only
-  // because their borders were simplified, in 255ths: there the lower one goes on below the upper.
+  std::int8_t relation = 0;  // between these two; 0: independent, as by chance
+  // The share, in 255ths, of the area covered by neither that is a gap between the two, uncovered
+  // only because their borders were simplified: there the lower one continues below the upper one.
   std::uint8_t gap = 0;
 
   friend bool operator==(const Meeting&, const Meeting&) = default;
 };
 
-/// Parts of a pixel, from 0 to 1.
+/// Shares of a pixel, from 0 to 1.
 template <typename Number>
 struct MeetingShares {
-  Number covered = 0;  // by the lower one, and what it goes on below the upper one
+  Number covered = 0;  // by the lower one, including its continuation below the upper one
   Number common = 0;   // by both
 };
 
-/// Of two layers that meet in a pixel, each of which covers so much of it, from 0 to 1.
+/// For two layers that meet in a pixel, given the share of it that each covers, from 0 to 1.
 template <typename Number>
 MeetingShares<Number> shares_of(Number below, Number above, const Meeting& meeting) {
   const auto common_of = [&](Number covered) {
@@ -45,7 +45,7 @@ MeetingShares<Number> shares_of(Number below, Number above, const Meeting& meeti
   return {covered, common_of(covered)};
 }
 
-/// How much of a pixel the two cover together.
+/// The share of a pixel that the two cover together.
 inline double covered_by(double below, double above, const Meeting& meeting) {
   const auto [covered, common] = shares_of(below, above, meeting);
   return above + covered - common;

@@ -15,11 +15,11 @@ namespace {
 constexpr float kRounding = 0.1f / 255;
 
 constexpr std::size_t kBytes = sizeof(std::uint64_t);
-constexpr std::uint64_t kLowBits = 0x7f7f7f7f7f7f7f7f;  // all but the highest one of each byte
+constexpr std::uint64_t kLowBits = 0x7f7f7f7f7f7f7f7f;  // all but the highest bit of each byte
 
 /// The highest bits of those bytes that are neither 0 nor 255.
 std::uint64_t partial_bytes(std::uint64_t bytes) {
-  const std::uint64_t changes = (bytes ^ bytes >> 1) & kLowBits;  // from bit to bit
+  const std::uint64_t changes = (bytes ^ bytes >> 1) & kLowBits;  // between adjacent bits
   return (changes + kLowBits) & ~kLowBits;
 }
 
@@ -32,16 +32,16 @@ void set_highest_bit(std::size_t byte, std::span<std::uint64_t> words) {
   words[byte / kBytes] |= std::uint64_t{0x80} << byte % kBytes * 8;
 }
 
-/// Whether the layer has nothing but lines over one class, each of which lies over what is below
-/// whatever that is.
+/// Whether the layer consists of lines over at most one class, each of which is drawn over the
+/// layers below independently of the others.
 bool is_plain(const PictureParts::Layer& layer) {
   const PaintedLayer& painted = *layer.painted;
   const bool is_separable = layer.lines.empty() || painted.opacity == 1;
   return layer.classes.size() <= 1 && is_separable && painted.pattern == nullptr;
 }
 
-/// Lays a plain layer over what is below it where it does not meet that in a way that is known.
-/// share_of(channel) is a Number.
+/// Draws a plain layer over the paint below it, without known relations. share_of(channel) is a
+/// Number.
 template <typename Number, typename ShareOf>
 PaintOf<Number> with_plain_layer(const PictureParts::Layer& layer, PaintOf<Number> sum,
                                  const ShareOf& share_of) {
@@ -56,14 +56,14 @@ PaintOf<Number> with_plain_layer(const PictureParts::Layer& layer, PaintOf<Numbe
   return sum;
 }
 
-/// Of all layers, over the background.
+/// All layers over the background.
 template <typename Number>
 PaintOf<Number> over_background(const PaintOf<Number>& sum, const PaintOf<Number>& background) {
   return mixed(sum, 1.0f, background, 1.0f - sum.covered + sum.beneath);
 }
 
-// Several mixtures at once, by the vector extensions of g++ and clang: the same operations in the
-// same order, and so the same colours, as one by one.
+// Several mixtures at the same time, using the vector extensions of g++ and clang: the same
+// operations in the same order, so the colours are the same as one by one.
 constexpr std::size_t kLanes = 4;
 using Floats __attribute__((vector_size(kLanes * sizeof(float)))) = float;
 using Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t)))) = std::int32_t;
@@ -75,7 +75,7 @@ PaintOf<Floats> in_all_lanes(const Paint& paint) {
 }
 
 std::array<Rgba, kLanes> to_rgba(const PaintOf<Floats>& paint) {
-  const Floats scale = 1.0f / paint.a;  // not looked at where that is transparent
+  const Floats scale = 1.0f / paint.a;  // ignored where it is transparent
   const auto to_bytes = [](Floats shares) {
     return __builtin_convertvector(to_byte_and_half(shares), Ints);
   };
@@ -159,7 +159,7 @@ void MixtureColours::set_exact(std::size_t mixture, Rgba colour) {
   origins_[mixture] = kind.origin;
 }
 
-// Of mixtures without meetings, of plain layers.
+// For mixtures without meetings, of plain layers.
 void MixtureColours::find_exact_in_lanes(std::span<const std::uint32_t> mixtures) {
   const PaintOf<Floats> background = in_all_lanes(background_);
   std::array<const std::uint8_t*, kLanes> values{};
@@ -168,7 +168,7 @@ void MixtureColours::find_exact_in_lanes(std::span<const std::uint32_t> mixtures
     return __builtin_convertvector(here, Floats) / 255.0f;
   };
   for (std::size_t first = 0; first < mixtures.size(); first += kLanes) {
-    // Lanes that are left over have the last mixture, too.
+    // Unused lanes repeat the last mixture.
     const auto in_lane = [&](std::size_t i) {
       return mixtures[std::min(first + i, mixtures.size() - 1)];
     };
@@ -227,8 +227,8 @@ bool MixtureColours::is_edge_at_hand() const {
   });
 }
 
-// Edges are told from each other by all values but those of the masks whose edges they are, which
-// get values that are no mixture's for that.
+// The key of an edge consists of all values except those of the masks that have the edge, which are
+// replaced by values that occur in no mixture.
 std::uint32_t MixtureColours::edge_at_hand() {
   const std::size_t size = mixtures_->words_each;
   words_.resize(size);
@@ -261,7 +261,7 @@ MixtureColours::Edge MixtureColours::make_edge() {
   return edge;
 }
 
-// Whether values between the two sides give the colours between them.
+// Whether values between the two sides give colours on the line between them.
 bool MixtureColours::is_on_line(const Edge& edge) {
   const auto is_near = [](float a, float b) { return std::abs(a - b) < kRounding; };
   constexpr std::array<std::uint8_t, 3> kValues{51, 128, 204};
@@ -299,8 +299,8 @@ void MixtureColours::colour_along(const Edge& edge, std::size_t mixture) {
   origins_[mixture] = origins_[first];
 }
 
-// Where a colour lets others through, its opacity is rounded apart from what it is made of, which
-// then moves by up to a whole value of 255 instead of half of one.
+// In translucent colours, the opacity is rounded separately from the premultiplied channels, which
+// may then change by up to a whole unit of 255 instead of half of one.
 bool MixtureColours::is_close_once_rounded(const Edge& edge, std::uint8_t value) {
   const float exact = static_cast<float>(value) / 255;
   const float share = edge.nearest_share(value);
@@ -310,7 +310,7 @@ bool MixtureColours::is_close_once_rounded(const Edge& edge, std::uint8_t value)
   return difference(one, other).most <= kMostChange;
 }
 
-// In the copy of the values at hand.
+// In the copy of the current values.
 std::array<std::uint8_t, 2> MixtureColours::exchange_values(std::array<std::uint8_t, 2> values) {
   auto* copy = reinterpret_cast<std::uint8_t*>(words_.data());
   for (std::size_t i = 0; i < partial_count_; ++i) std::swap(copy[partial_[i]], values[i]);
@@ -324,7 +324,7 @@ Paint MixtureColours::mixture_with(std::array<std::uint8_t, 2> values) {
   return mixture;
 }
 
-// Of the values at hand, over the background.
+// For the current values, over the background.
 Paint MixtureColours::mixture_at_hand() const {
   Paint sum;
   for (const PictureParts::Layer& layer : parts_->layers()) sum = with_layer(layer, sum);
@@ -387,7 +387,7 @@ Paint MixtureColours::laid_over(const PictureParts::Layer& layer, const Paint& a
   return meeting.relation == 0 ? over(above, below) : over(above, below, meeting);
 }
 
-// Of relation 0 if there is none.
+// With relation 0 if there is none.
 Meeting MixtureColours::meeting_of(const PictureParts::Layer& layer) const {
   if (layer.meeting == PictureParts::kNone) return {};
   return {0, static_cast<std::int8_t>(values_[layer.meeting]), values_[layer.meeting + 1]};

@@ -1,4 +1,4 @@
-// The colours that mixtures of masks show.
+// The colours of mixtures of masks.
 #pragma once
 
 #include <array>
@@ -14,37 +14,38 @@
 
 namespace trapeze {
 
-/// Colours the mixtures of one picture after the other. One thread at a time.
+/// Computes the colours of the mixtures of pictures one after the other. One thread at a time.
 class MixtureColours {
  public:
-  /// Of a picture over that background. Both arguments are looked at until the next call.
+  /// Starts a picture over that background. Both arguments must live until the next call.
   void begin(const PictureParts& parts, const Mixtures& mixtures, Rgba background);
 
-  /// The sum of the changes of all channels of all pixels, if along edges they become at most so
-  /// far from the exact ones.
+  /// The sum of the changes of all channels of all pixels if colours along edges may differ from
+  /// the exact ones by at most that much.
   double change_along_edges(int most_change);
-  /// Chooses colours by that; all are exact if it is 0.
+  /// Computes colours with that limit; all are exact if it is 0.
   void colour(int most_change);
 
-  /// As they became last, by mixture.
+  /// The colours computed last, by mixture.
   std::span<const Rgba> colours() const { return colours_; }
   std::span<const Origin> origins() const { return origins_; }
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  // An edge is where one mask has a part of the pixel, or where two lie side by side and have all
-  // of it together. Whatever the others show, colours go in even steps from one side to the other.
+  // An edge is where one mask covers a part of the pixel, or where two are side by side and
+  // together cover all of it. Whatever the other masks show, colours go in even steps from one side
+  // to the other.
   struct Edge {
     Paint from;
     Paint to;
-    bool is_on_line = false;  // else colours between the two are others
-    float most_apart = 0;     // of both sides: the greatest difference of a channel, of 255
+    bool is_on_line = false;  // otherwise colours in between do not follow the line
+    float most_apart = 0;     // the greatest difference of a channel between the sides, of 255
     float sum_apart = 0;      // the sum of the differences
     bool is_opaque = false;   // on both sides
-    // For the change at hand:
+    // For the current limit:
     std::uint32_t steps = 1;
-    float step = 1;                // the share of one
+    float step = 1;                // share of one step
     std::uint32_t first_step = 0;  // index in step_mixtures_
 
     std::uint32_t nearest_step(std::uint8_t value) const { return (2 * value * steps + 255) / 510; }
@@ -54,10 +55,10 @@ class MixtureColours {
     Paint between(float share) const { return mixed(to, share, from, 1 - share); }
   };
 
-  // What is known of a mixture whatever the change.
+  // Properties of a mixture that do not depend on the limit.
   struct Kind {
     std::uint32_t edge = kNone;
-    std::uint8_t value = 0;  // of the mask whose edge it is
+    std::uint8_t value = 0;  // of the mask that has the edge
     bool has_meetings = false;
     bool is_exact_known = false;
     Origin origin = Origin::mixed;  // of the exact colour
@@ -95,16 +96,16 @@ class MixtureColours {
   std::vector<std::uint64_t> relation_bits_;
   std::vector<Kind> kinds_;  // by mixture
   std::vector<Edge> edges_;
-  std::vector<std::uint64_t> edge_words_;  // by edge: its key
+  std::vector<std::uint64_t> edge_words_;  // the keys, by edge
   NumberTable edge_numbers_;
-  std::vector<std::uint32_t> step_mixtures_;  // by step of all edges: one that has its colour
+  std::vector<std::uint32_t> step_mixtures_;  // by step of all edges: a mixture with its colour
   std::vector<Rgba> colours_;                 // by mixture
   std::vector<Origin> origins_;               // by mixture
-  std::vector<std::uint32_t> wanted_;         // mixtures whose exact colours are to be found
-  // Of the mixture at hand.
+  std::vector<std::uint32_t> wanted_;         // mixtures whose exact colours are needed
+  // For the current mixture.
   const std::uint8_t* values_ = nullptr;
-  std::vector<std::uint64_t> words_;        // a copy of its values that may be changed
-  std::array<std::uint32_t, 2> partial_{};  // the first channels that have a part of the pixel
+  std::vector<std::uint64_t> words_;        // a modifiable copy of its values
+  std::array<std::uint32_t, 2> partial_{};  // the first channels that partly cover the pixel
   std::size_t partial_count_ = 0;
   std::size_t meeting_count_ = 0;
 };

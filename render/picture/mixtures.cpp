@@ -91,12 +91,12 @@ void MixtureFinder::find(const PictureParts& parts, Mixtures& mixtures) {
   }
 }
 
-// The keys of the whole row first, so that the slots of all of them are fetched at once.
+// Computes the keys of the whole row first, so that all of their slots can be prefetched.
 template <std::size_t kWords>
 void MixtureFinder::find_row(int row) {
   begin_row(row);
   const std::size_t first_pixel = static_cast<std::size_t>(row) * columns_;
-  std::uint64_t* key = row_keys_.data();  // of the run at hand
+  std::uint64_t* key = row_keys_.data();  // of the current run
   put_key<kWords>(0, first_pixel, key);
   numbers_.prefetch(hash_of({key, words_each<kWords>()}));
   for_each_bit(changes_, [&](std::size_t column) {
@@ -113,7 +113,7 @@ void MixtureFinder::find_row(int row) {
   number_row<kWords>();
 }
 
-// Inlined, so that it knows of how many words the key is where its caller does.
+// Inlined, so that the number of words is a constant if the caller knows it.
 [[gnu::always_inline]] inline std::uint32_t MixtureFinder::number_of_key(
     std::span<const std::uint64_t> key) {
   std::vector<std::uint64_t>& words = mixtures_->words;
@@ -143,7 +143,7 @@ void MixtureFinder::number_row() {
   mixtures_->row_end.push_back(static_cast<std::uint32_t>(mixtures_->runs.size()));
 }
 
-// Marks where runs may end, and has the masks at the first pixel.
+// Marks where runs may end, and sets the masks to the first pixel.
 void MixtureFinder::begin_row(int row) {
   std::fill(changes_.begin(), changes_.end(), 0);
   masks_.clear();
@@ -155,7 +155,7 @@ void MixtureFinder::begin_row(int row) {
   for (std::size_t k = 0; k < parts_->layers().size(); ++k) mark_layer(k, row);
 }
 
-// Marks where the run at hand may end for what the layer shows in the row.
+// Marks where the current run may end because of the layer's contents in the row.
 void MixtureFinder::mark_layer(std::size_t number, int row) {
   const PictureParts::Layer& layer = parts_->layers()[number];
   for (const PictureParts::Part& part : layer.classes) mark_mask(part.channel, row);
@@ -213,7 +213,7 @@ void MixtureFinder::mark_meetings(std::size_t number, int row) {
   }
 }
 
-// To a column where any of them may change.
+// Advances to a column where any of them may change.
 void MixtureFinder::advance_masks(std::size_t column) {
   for (MaskRow& mask : masks_) {
     if (mask.run->end > column) continue;
@@ -223,7 +223,7 @@ void MixtureFinder::advance_masks(std::size_t column) {
   }
 }
 
-/// Of the pixel at hand.
+/// For the current pixel.
 template <std::size_t kWords>
 inline void MixtureFinder::put_key(std::size_t column, std::size_t pixel, std::uint64_t* key) {
   if constexpr (kWords == 1) {

@@ -1,4 +1,4 @@
-// Which values of which masks the pixels of a picture show, as runs of equal pixels.
+// Finds which values of which masks the pixels of a picture show, as runs of equal pixels.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace trapeze {
 
-/// The layers of a picture, with a channel for each of their masks. Channel 0 is that of what
-/// covers every pixel wholly. A view of the caller's layers.
+/// The layers of a picture, with a channel for each of their masks. Channel 0 represents full
+/// coverage of every pixel. A view of the caller's layers.
 class PictureParts {
  public:
   static constexpr std::uint32_t kWhole = 0;
@@ -30,10 +30,10 @@ class PictureParts {
     std::vector<Part> classes;
     std::vector<Part> lines;
     std::uint32_t pattern = kWhole;
-    std::uint32_t meeting = kNone;  // number of its first value, see Mixtures
+    std::uint32_t meeting = kNone;  // index of its first value, see Mixtures
   };
 
-  /// Throws std::invalid_argument if a mask is not of that size.
+  /// Throws std::invalid_argument if a mask has another size.
   void assign(std::span<const PaintedLayer> layers, int width, int height);
 
   int width() const { return width_; }
@@ -42,7 +42,7 @@ class PictureParts {
   /// Null for channel 0 and those of patterns.
   const Mask* mask_of(std::uint32_t channel) const { return masks_[channel]; }
   std::uint32_t channel_count() const { return static_cast<std::uint32_t>(masks_.size()); }
-  /// Of channels, by number, then two for each layer with meetings: relation and gap.
+  /// One value per channel, followed by two for each layer with meetings: relation and gap.
   std::size_t value_count() const { return value_count_; }
 
  private:
@@ -58,52 +58,52 @@ class PictureParts {
   std::size_t value_count_ = 0;
 };
 
-/// A picture as runs of pixels that show the same mixture: the same values of all masks, where
-/// layers meet in the same way.
+/// A picture as runs of pixels with the same mixture: the same values of all masks, and the same
+/// relations where layers meet.
 struct Mixtures {
   std::size_t words_each = 0;
   std::vector<std::uint64_t> words;    // by mixture: its values, one after the other
-  std::vector<std::uint32_t> pixels;   // by mixture: how many show it
-  std::vector<Run> runs;               // of all rows; the number of a mixture in place of a colour
+  std::vector<std::uint32_t> pixels;   // by mixture: the number of pixels that show it
+  std::vector<Run> runs;               // of all rows; with mixture numbers in place of colours
   std::vector<std::uint32_t> row_end;  // by row, the index after its last run
 
   std::size_t size() const { return pixels.size(); }
-  /// Of PictureParts::value_count() values.
+  /// PictureParts::value_count() values.
   const std::uint8_t* values_of(std::size_t mixture) const {
     return reinterpret_cast<const std::uint8_t*>(words.data() + mixture * words_each);
   }
 };
 
-/// Finds the mixtures of pictures one after the other, with working memory for reuse. One thread at
-/// a time.
+/// Finds the mixtures of pictures one after the other, with reused working memory. One thread at a
+/// time.
 class MixtureFinder {
  public:
   void find(const PictureParts& parts, Mixtures& mixtures);
 
  private:
-  // Where the value of a channel lies in the words of a mixture.
+  // The position of the value of a channel in the words of a mixture.
   struct Place {
     std::uint32_t word = 0;
     std::uint32_t shift = 0;
 
     explicit Place(std::size_t number);
   };
-  // A mask in the row at hand.
+  // A mask in the current row.
   struct MaskRow {
-    const MaskRun* run = nullptr;  // at the pixel at hand
+    const MaskRun* run = nullptr;  // at the current pixel
     Place place;
   };
-  // A pattern in the row at hand.
+  // A pattern in the current row.
   struct PatternRow {
     const std::uint8_t* values = nullptr;
     Place place;
   };
   struct LayerMeeting {
-    std::size_t next = 0;  // the first that is not before the pixel at hand
+    std::size_t next = 0;  // the first one not before the current pixel
     bool has_any = false;  // in the row
   };
 
-  // Of mixtures of so many words; 0: however many.
+  // For mixtures of that many words; 0: any number.
   template <std::size_t kWords>
   std::size_t words_each() const {
     return kWords == 0 ? of_masks_.size() : kWords;
@@ -127,14 +127,14 @@ class MixtureFinder {
   Mixtures* mixtures_ = nullptr;
   std::size_t columns_ = 0;
   std::vector<std::uint64_t> changes_;  // by pixel of the row
-  std::vector<std::uint64_t> covered_;  // by pixel of the row, by the layer at hand
-  std::vector<MaskRow> masks_;          // those that have values in the row
+  std::vector<std::uint64_t> covered_;  // by pixel of the row, for the current layer
+  std::vector<MaskRow> masks_;          // masks with values in the row
   std::vector<PatternRow> patterns_;
-  std::vector<std::vector<std::uint8_t>> pattern_values_;  // by layer: of the pixels of the row
+  std::vector<std::vector<std::uint8_t>> pattern_values_;  // by layer: for the pixels of the row
   std::vector<LayerMeeting> meetings_;                     // by layer
   bool has_meetings_ = false;                              // in the row
   std::vector<std::uint64_t>
-      of_masks_;  // words of the pixel at hand, without patterns and meetings
+      of_masks_;  // words of the current pixel, without patterns and meetings
   std::vector<std::uint64_t> row_keys_;  // of the runs of the row
   std::vector<std::uint32_t> row_ends_;  // the columns after them
   NumberTable numbers_;

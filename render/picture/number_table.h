@@ -10,7 +10,7 @@
 
 namespace trapeze {
 
-/// Spreads words over all 64 bits, of which the upper half is the better one.
+/// Mixes words into 64 bits, of which the upper half is better distributed.
 inline std::uint64_t hash_of(std::span<const std::uint64_t> words) {
   std::uint64_t hash = 0;
   for (const std::uint64_t word : words) {
@@ -19,15 +19,16 @@ inline std::uint64_t hash_of(std::span<const std::uint64_t> words) {
   return hash * 0xc2b2ae3d27d4eb4f;
 }
 
-/// Gives keys numbers, for one set of keys after the other. The caller holds the keys, by number.
-/// It is only as large as the last set needed, so that it remains in the processor's cache. One
-/// thread at a time.
+/// Assigns numbers to keys, for one set of keys after the other. The caller stores the keys, by
+/// number. The table is only as large as the last set needed, so that it stays in the processor's
+/// cache. One thread at a time.
 class NumberTable {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// The number of the key with that hash, of which the upper half counts, for which
-  /// is_same(number) holds; kNone, to be set, if it is new. Lasts until the next call.
+  /// The number of the key with that hash, of which only the upper half is used, for which
+  /// is_same(number) holds; kNone, to be set, if the key is new. The reference is valid until the
+  /// next call.
   template <typename IsSame>
   std::uint32_t& find(std::uint64_t hash, const IsSame& is_same) {
     if (count_ * 2 >= slots_.size()) grow();
@@ -42,7 +43,7 @@ class NumberTable {
     return slots_[i].number;
   }
 
-  /// The same without adding anything: kNone if the key is not there.
+  /// The same without adding anything: kNone if there is no such key.
   template <typename IsSame>
   std::uint32_t look_up(std::uint64_t hash, const IsSame& is_same) const {
     const auto tag = static_cast<std::uint32_t>(hash >> 32);
@@ -53,12 +54,12 @@ class NumberTable {
     return kNone;
   }
 
-  /// To be called some time before find() where a table may be too large for the processor's cache.
+  /// Call it some time before find() if a table may be too large for the processor's cache.
   void prefetch(std::uint64_t hash) const {
     __builtin_prefetch(&slots_[(hash >> 32) & (slots_.size() - 1)]);
   }
 
-  /// Forgets all keys.
+  /// Removes all keys.
   void clear() {
     const std::size_t size =
         std::min(slots_.size(), std::bit_ceil(std::max(kLeastSlots, 2 * count_)));
@@ -71,7 +72,7 @@ class NumberTable {
 
   struct Slot {
     std::uint32_t tag = 0;
-    std::uint32_t number = kNone;  // kNone: it is empty
+    std::uint32_t number = kNone;  // kNone: empty
   };
 
   void grow() {

@@ -1,4 +1,4 @@
-// How colours of pictures come about.
+// How colours of pictures originate.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,9 @@
 namespace trapeze {
 
 enum class Origin : std::uint8_t {
-  flat,   // as styles have it: of whole pixels, without any edge in them
-  edge,   // one of even steps between two flat ones, along an edge
-  mixed,  // otherwise
+  flat,   // as in the style: of whole pixels, without an edge in them
+  edge,   // one of the even steps between two flat colours, along an edge
+  mixed,  // any other
 };
 
 }  // namespace trapeze

@@ -23,7 +23,7 @@ Paint over(const Paint& above, const Paint& below, const Meeting& meeting) {
 }
 
 Paint settled(const Paint& sum) {
-  constexpr float kHalfValue = 0.501f / 255;  // and what the sum lost in rounding
+  constexpr float kHalfValue = 0.501f / 255;  // including rounding errors of the sum
   const bool is_whole = sum.classes > 1 && sum.covered > 1 - kHalfValue * sum.classes;
   if (!is_whole && sum.covered <= 1) return sum;
   Paint paint = mixed(sum, 1 / sum.covered, {}, 0.0f);

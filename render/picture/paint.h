@@ -1,4 +1,4 @@
-// Colours that cover a part of a pixel, and how they lie over and beside each other.
+// Colours that cover a part of a pixel, and how they are combined.
 #pragma once
 
 #include "render/picture/colour.h"
@@ -6,22 +6,23 @@
 
 namespace trapeze {
 
-/// What one or several layers show of a pixel. Colours are premultiplied; all from 0 to 1. Numbers
-/// are floats, or vectors of them for as many pixels, which come out the same to the last bit.
+/// The contribution of one or more layers to a pixel. Colours are premultiplied; all values are
+/// from 0 to 1. Numbers are floats, or vectors of floats for several pixels; both give
+/// bit-identical results.
 template <typename Number>
 struct PaintOf {
   Number r{};
   Number g{};
   Number b{};
   Number a{};
-  Number covered{};  // how much of the pixel they cover, however transparent they are
-  Number beneath{};  // how much of it shows what lies beneath them through what they cover
-  Number classes{};  // within a layer only: how many there are
+  Number covered{};  // covered share of the pixel, regardless of opacity
+  Number beneath{};  // share of the pixel in which the area beneath shows through
+  Number classes{};  // only within a layer: the number of classes
 };
 
 using Paint = PaintOf<float>;
 
-/// Of something that covers that share of the pixel.
+/// The paint of a colour that covers that share of the pixel.
 template <typename Number>
 PaintOf<Number> to_paint(Rgba colour, Number share, float opacity = 1) {
   const Number a = static_cast<float>(colour.a) / 255.0f * share * opacity;
@@ -30,8 +31,7 @@ PaintOf<Number> to_paint(Rgba colour, Number share, float opacity = 1) {
           static_cast<float>(colour.b) * scale, a, share};
 }
 
-/// The colours of one times a factor, and those of the other times a factor; the rest is that of
-/// the other.
+/// The weighted sum of the colours of both; all other values are those of `other`.
 template <typename Number>
 PaintOf<Number> mixed(const PaintOf<Number>& one, float of_one, const PaintOf<Number>& other,
                       Number of_other) {
@@ -49,8 +49,8 @@ inline Paint faded(const Paint& paint, float opacity) {
   return fainter;
 }
 
-/// Lays a paint over another one that covers the same places as often as chance has it. One that
-/// covers nothing changes nothing.
+/// Draws a paint over another one, if the areas they cover are independent, as by chance. A paint
+/// that covers nothing changes nothing.
 template <typename Number>
 PaintOf<Number> over(const PaintOf<Number>& above, const PaintOf<Number>& below) {
   PaintOf<Number> sum = mixed(above, 1.0f, below, 1.0f - above.a);
@@ -60,15 +60,15 @@ PaintOf<Number> over(const PaintOf<Number>& above, const PaintOf<Number>& below)
   return sum;
 }
 
-/// Lays a paint over another one, of which it is known how they lie in the pixel.
+/// Draws a paint over another one whose relation in the pixel is known.
 Paint over(const Paint& above, const Paint& below, const Meeting& meeting);
 
-/// Adds what shines of a class through others.
+/// Adds the part of a class that shows through others.
 inline Paint added(const Paint& one, const Paint& other) {
   return mixed(one, 1.0f, other, 1.0f);
 }
 
-/// Adds a class that lies beside others.
+/// Adds a class that is beside others.
 inline Paint beside(const Paint& one, const Paint& other) {
   Paint sum = added(one, other);
   sum.covered += one.covered;
@@ -76,16 +76,16 @@ inline Paint beside(const Paint& one, const Paint& other) {
   return sum;
 }
 
-/// A pattern's paint, wherever the classes below it are.
+/// Draws the paint of a pattern over the area of the classes below it.
 inline Paint within(const Paint& above, const Paint& below) {
   return mixed(above, below.covered, below, 1.0f - above.a);
 }
 
-/// The sum of classes. Where they overlap, each has its share. And where they join, each value was
-/// rounded; the pixel is wholly covered all the same.
+/// The final sum of classes. If they overlap, each has its share. If they fill the pixel together,
+/// it is fully covered despite the rounding of each value.
 Paint settled(const Paint& sum);
 
-/// From 0.5 to 255.5: what is left of it without fractions is the value of a byte.
+/// From 0.5 to 255.5: truncated, it is the value of a byte.
 template <typename Number>
 Number to_byte_and_half(Number share) {
   const Number none{};

@@ -1,4 +1,4 @@
-// What a picture is composed of: masks with their colours, by layer.
+// The input of composition: masks with their colours, by layer.
 #pragma once
 
 #include <span>
@@ -13,18 +13,19 @@ namespace trapeze {
 
 /// Polygons or lines of one colour. A view of the caller's memory.
 struct PaintedClass {
-  const Mask* mask = nullptr;  // null: every pixel is wholly covered
-  Rgba colour;                 // its opacity included
-  // What shines of it through another class of the layer, which counts as covering the pixel.
+  const Mask* mask = nullptr;  // null: every pixel is fully covered
+  Rgba colour;                 // including its opacity
+  // The part that shows through another class of the layer; that class counts as covering the
+  // pixel.
   bool is_beneath = false;
 };
 
 /// A layer to be painted: classes of polygons, whose colours mix by the area that each covers; the
-/// pattern over them; lines over that, the first one lowest; the opacity applies to the result. A
+/// pattern over them; lines over that, the first one lowest. The opacity applies to the result. A
 /// view of the caller's memory.
 struct PaintedLayer {
   std::span<const PaintedClass> classes;
-  const PlacedPattern* pattern = nullptr;  // null: none; counts where the classes cover
+  const PlacedPattern* pattern = nullptr;  // null: none; visible where the classes cover
   Rgba pattern_colour = kTransparent;
   std::span<const PaintedClass> lines = {};
   double opacity = 1;

@@ -5,7 +5,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::size_t kMostRuns = std::size_t{1} << 17;  // more than a window of Deflate has
+constexpr std::size_t kMostRuns = std::size_t{1} << 17;  // more than a Deflate window contains
 
 }  // namespace
 
@@ -60,7 +60,7 @@ bool PastRuns::goes_on(std::size_t run) const {
   return runs_[run + 1].begin == past.begin + past.pixels * bytes_per_pixel_;
 }
 
-// Both runs end together, or the past one is shorter and nothing after it is looked at.
+// Either both runs end together, or the past one is shorter and the match ends with it.
 PastRuns::Match PastRuns::match(std::size_t past, std::size_t here) const {
   const Past& before = runs_[past];
   const Past& run = runs_[here];

@@ -1,8 +1,8 @@
-// Where in a picture pixels of several bytes were before, for Deflate to refer to them.
+// Finds earlier occurrences of pixels of several bytes in a picture, for Deflate to refer to.
 //
-// What is remembered is the last place of each colour, and of each two that follow one another:
-// where a picture has many boundaries, its colours come again and again, but seldom in longer
-// sequences. So a look takes the same time whatever the picture is.
+// It remembers the last position of each colour, and of each pair of consecutive colours: in a
+// picture with many boundaries, colours recur often, but rarely in longer sequences. So a look-up
+// takes constant time for any picture.
 #pragma once
 
 #include <array>
@@ -15,35 +15,35 @@ namespace trapeze {
 
 /// Equal pixels of a row.
 struct PixelRun {
-  std::uint32_t end = 0;    // the column after the last of them
-  std::uint32_t pixel = 0;  // its bytes, the first of them lowest
+  std::uint32_t end = 0;    // the column after the last one
+  std::uint32_t pixel = 0;  // its bytes, the first one lowest
 };
 
-/// One picture after the other, with memory that is kept. One thread at a time.
+/// Used for one picture after the other, with reused memory. One thread at a time.
 class PastRuns {
  public:
-  /// Pixels that are equal to those from a run on.
+  /// Pixels that equal those from a run on.
   struct Match {
     std::uint32_t distance = 0;  // in bytes
-    std::uint32_t pixels = 0;    // 0: there is none
-    std::uint32_t runs = 0;      // that begin within them
-    std::uint32_t repeats = 0;   // of these, those of several pixels
+    std::uint32_t pixels = 0;    // 0: no match
+    std::uint32_t runs = 0;      // number of runs that begin within them
+    std::uint32_t repeats = 0;   // number of these with several pixels
   };
 
-  /// Begins a picture with pixels of so many bytes.
+  /// Starts a picture with pixels of that many bytes.
   void begin(std::uint32_t bytes_per_pixel);
-  /// Adds the next row, whose first pixel is that byte of the picture.
+  /// Adds the next row, whose first pixel is at that byte of the picture.
   void add_row(std::span<const PixelRun> runs, std::uint32_t first_byte);
-  /// Lets those runs of the row be found that come before this one. It is not before the one of
+  /// Makes the runs of the row before this one available to find(). `run` must not be less than in
   /// the last call.
   void pass(std::size_t run);
-  /// For the pixels from a run of the row on, which has been passed to: where its colour was, and
-  /// where its colour and the next one were.
+  /// Matches for the pixels from a run of the row on, to which pass() has advanced: at the last
+  /// position of its colour, and at the last position of its colour followed by the next one.
   std::array<Match, 2> find(std::size_t run) const;
 
  private:
   struct Past {
-    std::uint32_t begin = 0;  // byte
+    std::uint32_t begin = 0;  // byte position
     std::uint32_t pixels = 0;
     std::uint32_t pixel = 0;
   };

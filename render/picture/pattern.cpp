@@ -8,8 +8,9 @@
 namespace trapeze {
 namespace {
 
-/// The share of a segment one pixel long, centred on `place`, that bands of `width` cover. The
-/// bands repeat after `period`, one of them around 0; the segment is across the bands.
+/// The share of a segment one pixel long, centred on `place`, that is covered by bands of that
+/// width. The bands repeat with `period`, and one of them is centred on 0; the segment is across
+/// the bands.
 double band_value(double place, double period, double width) {
   if (width >= period) return 1;
   const double half = width / 2;
@@ -50,7 +51,7 @@ void PlacedPattern::place(const Pattern& pattern, const View& view, double scale
   period_ = pattern.size * scale;
   band_width_ = kind_ == PatternKind::checker ? period_ / 2 : pattern.width * scale;
   along_x_ = std::cos(angle);
-  along_y_ = -std::sin(angle);  // rows run south
+  along_y_ = -std::sin(angle);  // rows run southwards
   west_ = static_cast<double>(view.origin_x - kGridMin) / view.cells_per_pixel + 0.5;
   north_ = static_cast<double>(view.origin_y - kGridMin) / view.cells_per_row() + view.first_row;
   if (kind_ != PatternKind::none && kind_ != PatternKind::dots) bands_.assign(period_, band_width_);
@@ -82,12 +83,12 @@ void PlacedPattern::draw(int row, std::size_t begin, std::size_t end, std::uint8
 
 void PlacedPattern::draw_dots(int row, std::size_t begin, std::size_t end,
                               std::uint8_t* values) const {
-  // Dots smaller than a pixel are paler instead.
+  // Dots smaller than a pixel become paler instead.
   const double radius = std::max(band_width_ / 2, 0.5);
   const auto most = static_cast<float>(std::min(1.0, band_width_ * band_width_));
   const auto reach = static_cast<float>(radius + 0.5);
   const auto pixels_of = static_cast<float>(period_ / kPhases);
-  // A dot is around phase 0: as a signed number a phase is the way from there.
+  // A dot is centred on phase 0: a phase as a signed number is the distance from there.
   const auto from_middle = [pixels_of](Phase phase) {
     return static_cast<float>(static_cast<std::int32_t>(phase)) * pixels_of;
   };
@@ -100,7 +101,7 @@ void PlacedPattern::draw_dots(int row, std::size_t begin, std::size_t end,
   });
 }
 
-// The phases of a row go on by even steps from its first pixel, wherever the columns begin.
+// The phases of a row advance in even steps from its first pixel, wherever the columns begin.
 template <typename ShareAt>
 void PlacedPattern::draw_by(int row, std::size_t begin, std::size_t end, std::uint8_t* values,
                             const ShareAt& share_at) const {

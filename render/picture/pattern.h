@@ -33,25 +33,25 @@ struct Pattern {
   friend bool operator==(const Pattern&, const Pattern&) = default;
 };
 
-/// A pattern where it lies in one picture. It begins at the north-west corner of the world, so
+/// A pattern at its position in one picture. It starts at the north-west corner of the world, so
 /// pictures of neighbouring tiles join. Once placed, it may be read by many threads.
 class PlacedPattern {
  public:
-  /// `scale` is the picture's. Keeps its memory from one picture to the next.
+  /// `scale` is that of the picture. Reuses its memory from one picture to the next.
   void place(const Pattern& pattern, const View& view, double scale);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Writes how much of the pixels of a row the pattern covers, from 0 to 255: for column i, from
-  /// `begin` to the one before `end`, to values[i].
+  /// Writes the coverage of the pixels of a row by the pattern, from 0 to 255: for column i, from
+  /// `begin` to `end` - 1, to values[i].
   void draw(int row, std::size_t begin, std::size_t end, std::uint8_t* values) const;
 
  private:
-  // A place within a period, as a share of it in 2^-32: at the end of a period the next one begins
-  // by itself.
+  // A position within a period, as a multiple of 2^-32 of the period: it wraps around at the end of
+  // a period by itself.
   using Phase = std::uint32_t;
 
-  // The shares that bands cover at all places of a period, looked up.
+  // A table of the coverage by bands at all positions of a period.
   class Bands {
    public:
     void assign(double period, double width);
@@ -76,9 +76,9 @@ class PlacedPattern {
   PatternKind kind_ = PatternKind::none;
   int width_ = 0;
   int height_ = 0;
-  double period_ = 1;  // pixels, as the next four
+  double period_ = 1;  // pixels, like the next four
   double band_width_ = 1;
-  double west_ = 0;  // of the middle of the first pixel, from the corner of the world
+  double west_ = 0;  // of the centre of the first pixel, from the corner of the world
   double north_ = 0;
   double along_x_ = 1;  // the direction of the pattern
   double along_y_ = 0;

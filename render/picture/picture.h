@@ -1,5 +1,5 @@
-// Pictures in memory: one colour a pixel, to be drawn on, or runs of equal pixels, as composition
-// makes them and encoders take them. Row 0 is the northernmost; colours are not premultiplied.
+// Pictures in memory: one colour per pixel, for drawing, or runs of equal pixels, as composition
+// produces and encoders read them. Row 0 is the northernmost; colours are not premultiplied.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace trapeze {
 
-/// One colour a pixel.
+/// One colour per pixel.
 struct Picture {
   int width = 0;
   int height = 0;
@@ -24,18 +24,18 @@ struct Picture {
   }
 };
 
-/// Pixels of one colour that lie side by side in a row.
+/// Adjacent pixels of a row with the same colour.
 struct Run {
-  std::uint32_t end = 0;     // the column after the last of them
+  std::uint32_t end = 0;     // the column after the last one
   std::uint32_t colour = 0;  // index
 };
 
-/// A picture as runs: those of a row follow one another without gaps up to the width of the
-/// picture, so that a picture of few boundaries is small whatever its size.
+/// A picture as runs: the runs of a row are consecutive and fill the width of the picture, so that
+/// a picture with few boundaries is small whatever its size.
 struct RunPicture {
   int width = 0;
   int height = 0;
-  std::vector<Rgba> colours;           // may hold colours that no pixel has
+  std::vector<Rgba> colours;           // may contain colours without pixels
   std::vector<Origin> origins;         // by colour
   std::vector<Run> runs;               // of all rows
   std::vector<std::uint32_t> row_end;  // by row, the index after its last run
@@ -45,7 +45,7 @@ struct RunPicture {
     const std::size_t begin = i == 0 ? 0 : row_end[i - 1];
     return std::span(runs).subspan(begin, row_end[i] - begin);
   }
-  /// In a time that grows with the runs of the row.
+  /// Takes time proportional to the number of runs in the row.
   Rgba at(int column, int row) const;
   bool is_constant() const;
   std::size_t pixel_count() const {
@@ -54,13 +54,13 @@ struct RunPicture {
 };
 
 Picture to_pixels(const RunPicture& picture);
-/// Every colour of it is flat.
+/// All of its colours get the origin flat.
 RunPicture to_runs(const Picture& picture);
-/// Sets the runs of the picture to those, in other colours: `becomes` has the new number of each.
+/// Sets the runs of the picture to `runs` with other colours: `becomes` has the new index of each.
 /// Neighbours that become equal are joined.
 void recolour(std::span<const Run> runs, std::span<const std::uint32_t> row_end,
               std::span<const std::uint32_t> becomes, RunPicture& picture);
-/// Pictures of one width, one below the other. There is at least one.
+/// Joins pictures of the same width, from top to bottom. There must be at least one.
 RunPicture joined(std::span<const RunPicture* const> pictures);
 
 }  // namespace trapeze

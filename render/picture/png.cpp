@@ -19,13 +19,12 @@ namespace {
 
 constexpr std::size_t kMaxColours = 256;
 
-// The palette as it is stored: the translucent colours in front, so that tRNS ends with the last of
-// them.
+// The palette as it is stored: translucent colours first, so that tRNS ends with the last of them.
 struct StoredPalette {
   std::vector<png_color> colours;
   std::vector<png_byte> opacities;     // of the first colours; the others are opaque
-  std::vector<std::uint8_t> index_of;  // stored index of each colour of the picture
-  int bits = 8;                        // a pixel
+  std::vector<std::uint8_t> index_of;  // stored index for each colour of the picture
+  int bits = 8;                        // per pixel
 };
 
 StoredPalette pack_palette(const RunPicture& picture) {
@@ -45,7 +44,8 @@ StoredPalette pack_palette(const RunPicture& picture) {
   return stored;
 }
 
-// Packs indices of one byte each into fewer bits, the first pixel in the highest bits of a byte.
+// Packs indices of one byte each into fewer bits, with the first pixel in the highest bits of a
+// byte.
 void pack_bits(std::span<const std::uint8_t> indices, int bits, std::uint8_t* row) {
   const std::size_t per_byte = 8 / static_cast<std::size_t>(bits);
   for (std::size_t i = 0; i < indices.size(); i += per_byte) {
@@ -59,8 +59,8 @@ void pack_bits(std::span<const std::uint8_t> indices, int bits, std::uint8_t* ro
 
 }  // namespace
 
-// Everything that libpng is to write, prepared beforehand: no object with a destructor may be
-// created where libpng may jump out by longjmp.
+// Everything that libpng is to write, prepared in advance: no object with a destructor may be
+// created where libpng may return by longjmp.
 struct PngJob {
   int width = 0;
   int height = 0;
@@ -68,8 +68,8 @@ struct PngJob {
   int colour_type = PNG_COLOR_TYPE_PALETTE;
   StoredPalette palette;
   RunDeflater deflater;
-  std::vector<PixelRun> row;                 // for the deflater
-  std::span<const std::uint8_t> compressed;  // of the deflater
+  std::vector<PixelRun> row;                 // input of the deflater
+  std::span<const std::uint8_t> compressed;  // output of the deflater
 
   std::string bytes;  // the result
   std::string error;
@@ -77,7 +77,7 @@ struct PngJob {
 
 namespace {
 
-/// Bytes of a row in runs of equal ones.
+/// Appends the bytes of a row as runs of equal bytes.
 void append_byte_runs(std::span<const std::uint8_t> bytes, std::vector<PixelRun>& runs) {
   for (std::uint32_t i = 0; i < bytes.size(); ++i) {
     if (!runs.empty() && runs.back().pixel == bytes[i]) {
@@ -88,7 +88,7 @@ void append_byte_runs(std::span<const std::uint8_t> bytes, std::vector<PixelRun>
   }
 }
 
-/// Gives the deflater the rows of the picture, in pixels that pixel_of makes of its colours.
+/// Passes the rows of the picture to the deflater, with colours converted to pixels by pixel_of.
 template <typename PixelOf>
 void deflate_rows(const RunPicture& picture, std::uint32_t bytes_per_pixel, PngJob& job,
                   const PixelOf& pixel_of) {
@@ -100,7 +100,7 @@ void deflate_rows(const RunPicture& picture, std::uint32_t bytes_per_pixel, PngJ
   }
 }
 
-/// The same, of indices that share bytes.
+/// The same for indices that share bytes.
 void deflate_packed_rows(const RunPicture& picture, PngJob& job) {
   const auto width = static_cast<std::size_t>(picture.width);
   std::vector<std::uint8_t> indices(width);
@@ -145,7 +145,7 @@ void deflate_colours(const RunPicture& picture, PngJob& job) {
   PngJob& job = *static_cast<PngJob*>(png_get_error_ptr(png));
   try {
     job.error = message;
-  } catch (...) {  // without memory the error stays without words
+  } catch (...) {  // out of memory: the error has no message
   }
   png_longjmp(png, 1);
 }
@@ -158,14 +158,14 @@ void on_write(png_structp png, png_bytep data, std::size_t size) {
   try {
     job.bytes.append(reinterpret_cast<const char*>(data), size);
     is_written = true;
-  } catch (...) {  // no exception may pass through C
+  } catch (...) {  // exceptions must not pass through C code
   }
   if (!is_written) png_error(png, "out of memory");
 }
 
 void on_flush(png_structp) {}
 
-// False if libpng jumped out by longjmp. Has no objects to destroy, so nothing leaks.
+// False if libpng returned by longjmp. Has no objects to destroy, so nothing leaks.
 bool write(png_structp png, png_infop info, PngJob& job) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_write_fn(png, &job, on_write, on_flush);

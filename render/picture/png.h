@@ -1,4 +1,4 @@
-// Pictures to PNG and back, in memory.
+// Encodes and decodes PNG, in memory.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace trapeze {
 
 struct PngJob;
 
-/// Encodes pictures one after the other, with working memory for reuse.
+/// Encodes pictures one after the other, with reused working memory.
 ///
-/// A picture of at most 256 colours gets the smallest palette (1, 2, 4 or 8 bits a pixel, opacities
-/// in tRNS), any other is RGB if it is opaque and else RGBA. No pixel changes, except that wholly
-/// transparent ones may lose their hidden colour. Rows are not filtered: flat colours make runs as
-/// they are.
+/// A picture with at most 256 colours gets the smallest palette (1, 2, 4 or 8 bits per pixel,
+/// opacities in tRNS); any other is RGB if it is opaque, else RGBA. No pixel changes, except that
+/// fully transparent ones may lose their hidden colour. Rows are not filtered: flat colours form
+/// runs without that.
 ///
 /// Thread-safety: one thread at a time.
 class PngEncoder {
@@ -34,7 +34,8 @@ class PngEncoder {
   std::unique_ptr<PngJob> job_;
 };
 
-/// Decodes any PNG to a picture of colours. Throws std::runtime_error, saying why, if it cannot.
+/// Decodes any PNG to a picture with one colour per pixel. Throws std::runtime_error with the
+/// reason if it cannot.
 Picture decode_png(std::string_view bytes);
 
 }  // namespace trapeze

@@ -11,21 +11,21 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
 
-/// Cells of channels, the first of which has its middle at 0.
+/// A lattice of cells of channels; the centre of the first cell is 0.
 class Lattice {
  public:
   explicit Lattice(int most_change) : step_(2 * most_change + 1) {
     for (std::size_t i = 0; i < middles_.size(); ++i) {
       middles_[i] = divided(static_cast<int>(i), step_) * step_;
     }
-    // What is opaque remains so, and nothing else becomes so.
+    // Opaque colours stay opaque, and no others become opaque.
     for (std::size_t a = 0; a < 255; ++a) opacities_[a] = std::min(middles_[a], 254);
     opacities_[255] = 255;
     distances_.fill(most_change + 1);
   }
 
-  /// Opacities of flat colours attract those close to them, so that what is as opaque everywhere
-  /// remains so. Of two that are as close, the first one does.
+  /// Opacities of flat colours attract those close to them, so that areas of constant opacity keep
+  /// it. In case of a tie, the first one does.
   void attract(int opacity) {
     if (opacity == 255) return;
     for (int a = std::max(0, opacity - step_ / 2); a <= std::min(254, opacity + step_ / 2); ++a) {
@@ -36,7 +36,7 @@ class Lattice {
     }
   }
 
-  /// The middle of its cell.
+  /// The centre of the cell.
   Channels middle_of(const Channels& channels) const {
     const int a = opacities_[static_cast<std::size_t>(channels.a)];
     return {std::min(middle(channels.r), a), std::min(middle(channels.g), a),
@@ -49,10 +49,10 @@ class Lattice {
   int step_;
   std::array<int, 256> middles_{};
   std::array<int, 256> opacities_{};
-  std::array<int, 256> distances_{};  // of opacities from what has attracted them
+  std::array<int, 256> distances_{};  // of opacities from the one that attracted them
 };
 
-/// For a table of colours.
+/// For storage in a table of colours.
 Rgba as_colour(const Channels& channels) {
   const auto byte = [](int channel) { return static_cast<std::uint8_t>(channel); };
   return {byte(channels.r), byte(channels.g), byte(channels.b), byte(channels.a)};
@@ -60,20 +60,20 @@ Rgba as_colour(const Channels& channels) {
 
 }  // namespace
 
-/// Numbers of colours by where their channels lie, so that those close to a colour are found
-/// without looking at all.
+/// Indexes colours by their channels, so that those close to a colour are found without examining
+/// all.
 class ColourReducer::Neighbourhood {
  public:
   Neighbourhood() { first_.fill(kNone); }
 
-  /// Numbers are added in ascending order, from 0 on.
+  /// Numbers are added in ascending order, from 0.
   void add(const Channels& channels) {
     std::uint32_t& first = first_[place_of(channels.r / kWidth, channels.g / kWidth)];
     next_.push_back(std::exchange(first, static_cast<std::uint32_t>(next_.size())));
   }
 
-  /// Calls visit(number) for all colours none of whose channels is further away than `reach`, and
-  /// for others. Those for which it returns false are taken out.
+  /// Calls visit(number) for all colours none of whose channels differs by more than `reach`, and
+  /// for some others. Removes those for which it returns false.
   template <typename Visit>
   void for_each_near(const Channels& channels, int reach, const Visit& visit) {
     const auto first_of = [reach](int channel) { return std::max(channel - reach, 0) / kWidth; };
@@ -105,7 +105,7 @@ class ColourReducer::Neighbourhood {
   std::vector<std::uint32_t> next_;  // by number
 };
 
-/// Around colours that may become one.
+/// A box around colours that may become one.
 class ColourReducer::Box {
  public:
   Box(const Channels& first, int most_side) : least_(first), most_(first), most_side_(most_side) {}
@@ -163,7 +163,7 @@ void ColourReducer::reduce(RunPicture& picture) {
   recolour(before.runs, before.row_end, becomes_, picture);
 }
 
-// All but mixed colours remain. New ones are numbered in the order in which they are met.
+// All colours except mixed ones remain. New colours are numbered in order of first occurrence.
 void ColourReducer::begin(const Given& given) {
   made_.clear();
   new_channels_.clear();
@@ -214,13 +214,13 @@ void ColourReducer::put_into_lattice(const Given& given, int most_change) {
   }
 }
 
-/// Boxes around colours take about half as many as the cells of the lattice.
+/// Boxes around colours number about half as many as the cells of the lattice.
 bool ColourReducer::may_be_gathered() const {
   return kept_.size() + (made_.size() - kept_.size()) / 2 <= kPaletteColours;
 }
 
-// Boxes are begun with the colour that most pixels have among those that are left. False if there
-// are too many.
+// Each box starts with the colour that has the most pixels of those left. False if there are too
+// many.
 bool ColourReducer::gather(const Given& given, int most_change) {
   begin(given);
   if (made_.size() > kPaletteColours) return false;
@@ -232,7 +232,7 @@ bool ColourReducer::gather(const Given& given, int most_change) {
     std::uint32_t number;  // among the others
   };
   std::vector<Left> left;
-  std::vector<std::uint32_t> of_others(others_.size());  // index of a new colour
+  std::vector<std::uint32_t> of_others(others_.size());  // indexes of new colours
   for (std::uint32_t i = 0; i < others_.size(); ++i) {
     const Channels channels = channels_of(others_.colours()[i]);
     of_others[i] = nearest(kept, channels, most_change);
@@ -269,7 +269,7 @@ bool ColourReducer::gather(const Given& given, int most_change) {
   return true;
 }
 
-/// Those that do not remain: each once, with all of its pixels.
+/// Collects the colours that do not remain, without duplicates, each with all of its pixels.
 void ColourReducer::number_others(const Given& given) {
   others_.clear();
   pixels_of_others_.clear();
@@ -282,7 +282,7 @@ void ColourReducer::number_others(const Given& given) {
   }
 }
 
-/// Of the new colours; kNone if all are too far. Of those that are as near, the first.
+/// The nearest new colour; kNone if all are too far away. In case of a tie, the first one.
 std::uint32_t ColourReducer::nearest(Neighbourhood& kept, const Channels& channels,
                                      int most_change) const {
   std::uint32_t nearest = kNone;

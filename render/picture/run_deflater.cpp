@@ -11,19 +11,19 @@ namespace {
 constexpr std::uint32_t kLeastMatch = 3;
 constexpr std::uint32_t kMostDistance = 32768;
 constexpr std::uint32_t kEndOfBlock = 256;
-constexpr std::uint32_t kColourBytes = 3;        // of a pixel, without its opacity
+constexpr std::uint32_t kColourBytes = 3;        // of a pixel, without opacity
 constexpr std::uint32_t kFirstLength = 257;      // symbol of the shortest match
-constexpr std::size_t kTokensOfRun = 6;          // at most, without those of a match that is cut up
-constexpr std::size_t kTokensOfBlock = 1 << 15;  // so many and those of a row, at most
+constexpr std::size_t kTokensOfRun = 6;          // maximum, except those of a match that is split
+constexpr std::size_t kTokensOfBlock = 1 << 15;  // maximum, plus those of one row
 constexpr int kMostCodeBits = 15;
 constexpr std::uint64_t kAdler = 65521;
-// Bits that a token takes, about: what is above is taken where it replaces more of them.
+// Approximate bits of a token: the row above is used where that replaces more of them.
 constexpr std::uint32_t kBitsOfLiteral = 6;
 constexpr std::uint32_t kBitsOfRepeat = 6;
 constexpr std::uint32_t kBitsOfMatchAbove = 10;
-constexpr std::uint32_t kBitsOfMatchWithPast = 9;  // and those that tell the distance
+constexpr std::uint32_t kBitsOfMatchWithPast = 9;  // plus those of the distance
 
-/// A symbol, with bits that follow it.
+/// A symbol with extra bits.
 struct Symbol {
   std::uint16_t symbol = 0;
   std::uint8_t extra_bits = 0;
@@ -56,7 +56,7 @@ constexpr auto kSymbolsOfLengths = [] {
   return symbols;
 }();
 
-/// How a symbol is written that has this code.
+/// The code of a symbol followed by its extra bits.
 template <typename Code>
 Code joined(const Code& code, const Symbol& symbol) {
   return {code.bits | std::uint64_t{symbol.extra} << code.length, code.length + symbol.extra_bits};
@@ -68,15 +68,16 @@ std::uint16_t reversed(std::uint32_t bits, int length) {
   return static_cast<std::uint16_t>(result);
 }
 
-/// Turns the counts of symbols, in ascending order, into the lengths of their Huffman codes, which
-/// descend (Moffat and Katajainen, "In-place calculation of minimum-redundancy codes", 1995).
+/// Converts the counts of symbols, in ascending order, to the lengths of their Huffman codes, in
+/// descending order (Moffat and Katajainen, "In-place calculation of minimum-redundancy codes",
+/// 1995).
 void to_code_lengths(std::span<std::uint32_t> counts) {
   const std::size_t size = counts.size();
   if (size == 1) {
     counts[0] = 1;
     return;
   }
-  // Inner nodes take the places of the symbols that were joined, and point to their parents.
+  // Inner nodes replace the symbols that were joined, and point to their parents.
   counts[0] += counts[1];
   std::size_t root = 0;
   std::size_t leaf = 2;
@@ -92,14 +93,14 @@ void to_code_lengths(std::span<std::uint32_t> counts) {
     const std::uint32_t first = take();
     counts[next] = first + take();
   }
-  // Their depths.
+  // The depths of inner nodes.
   counts[size - 2] = 0;
   for (std::size_t i = size - 2; i-- > 0;) counts[i] = counts[counts[i]] + 1;
-  // Those of the leaves.
+  // The depths of leaves.
   std::size_t available = 1;
   std::size_t used = 0;
   std::uint32_t depth = 0;
-  std::size_t inner = size - 1;  // after those that are left
+  std::size_t inner = size - 1;  // after the remaining ones
   std::size_t next = size;
   while (available > 0) {
     while (inner > 0 && counts[inner - 1] == depth) {
@@ -116,7 +117,7 @@ void to_code_lengths(std::span<std::uint32_t> counts) {
   }
 }
 
-/// Makes lengths, which descend, at most so long that a code of them is still complete.
+/// Limits lengths, which are in descending order, so that their code stays complete.
 void limit_lengths(std::span<std::uint32_t> lengths, int most) {
   const auto limit = static_cast<std::uint32_t>(most);
   if (lengths.front() <= limit) return;
@@ -126,7 +127,7 @@ void limit_lengths(std::span<std::uint32_t> lengths, int most) {
   std::uint32_t total = 0;
   for (std::uint32_t i = 1; i <= limit; ++i) total += counts[i] << (limit - i);
   for (; total > 1u << limit; --total) {
-    // A leaf of the longest goes below one that is shorter.
+    // One of the longest leaves moves below a shorter one.
     --counts[limit];
     std::uint32_t shorter = limit - 1;
     while (counts[shorter] == 0) --shorter;
@@ -152,7 +153,7 @@ void RunDeflater::begin(std::uint32_t columns, std::uint32_t bytes_per_pixel) {
   if (bytes_per_pixel_ > 1) past_.begin(bytes_per_pixel_);
   sum_ = 1;
   sum_of_sums_ = 0;
-  // A window of 32 kB; the fastest effort; no dictionary.
+  // A window of 32 kB, fastest compression, no dictionary.
   output_.assign({0x78, 0x01});
   bits_ = 0;
   bit_count_ = 0;
@@ -177,7 +178,7 @@ void RunDeflater::make_room(std::size_t tokens) {
   if (tokens_.size() < tokens) tokens_.resize(tokens);
 }
 
-/// `size`: bytes of a pixel, 0 if that is not known here.
+/// `size`: bytes per pixel, 0 if not known at compile time.
 template <std::uint32_t size>
 void RunDeflater::add_pixels(std::span<const PixelRun> runs) {
   Place place{0, runs.data(), above_.data(), 0};
@@ -189,7 +190,7 @@ void RunDeflater::add_pixels(std::span<const PixelRun> runs) {
     }
     return;
   }
-  // The filter goes with what is the same after it.
+  // The filter byte is included in the match with the row above.
   Same first = same_as_above(place);
   first.bits += kBitsOfLiteral;
   if (is_worth_it(first)) {
@@ -235,11 +236,11 @@ std::span<const std::uint8_t> RunDeflater::finish() {
   return output_;
 }
 
-/// How far the row goes on as the one above does; nothing where that is not worth to be known.
+/// How far the row equals the one above; nothing where that is not worth determining.
 inline RunDeflater::Same RunDeflater::same_as_above(const Place& place) const {
   const PixelRun* run = place.run;
   const PixelRun* above = place.above;
-  // One run alone takes as few bits by itself.
+  // A single run takes as few bits by itself.
   const bool is_alike = run->pixel == above->pixel && (run->end == above->end || length_above_ > 0);
   Same same;
   if (!is_alike) return same;
@@ -260,25 +261,25 @@ inline RunDeflater::Same RunDeflater::same_as_above(const Place& place) const {
   return same;
 }
 
-/// Whether to refer to the row above takes fewer bits than to write what is the same.
+/// Whether referring to the row above takes fewer bits than writing the equal part.
 inline bool RunDeflater::is_worth_it(const Same& same) const {
   const bool goes_on = length_above_ > 0 && same.pixels > 0;
   return goes_on ||
          (same.bits > kBitsOfMatchAbove && same.pixels * bytes_per_pixel_ >= kLeastMatch);
 }
 
-/// From the place on.
+/// From that position on.
 template <std::uint32_t size>
 inline void RunDeflater::add_rest_of_run(const Place& place) {
   const std::uint32_t pixels = place.run->end - place.column;
   const std::uint32_t pixel = place.run->pixel;
   const std::uint32_t bytes_per_pixel = size == 0 ? bytes_per_pixel_ : size;
-  // The pixel before is another one where the run begins.
+  // At the beginning of a run, the previous pixel is different.
   const std::uint32_t first = place.column == place.begin ? 1 : 0;
   const bool is_repeated = (pixels - first) * bytes_per_pixel >= kLeastMatch;
   const std::uint32_t literals = is_repeated ? first : pixels;
   if constexpr (size == 1) {
-    // Which of these it is cannot be foreseen: all are written, and those that are wanted kept.
+    // The case is unpredictable: all tokens are written, and only the needed ones kept.
     std::uint16_t* next = tokens_.data() + token_count_;
     for (std::uint32_t i = 0; i < kLeastMatch; ++i) next[i] = static_cast<std::uint16_t>(pixel);
     const std::uint32_t length = pixels - first;
@@ -302,8 +303,8 @@ inline void RunDeflater::add_rest_of_run(const Place& place) {
   add_match(kRepeat, (pixels - first) * bytes_per_pixel);
 }
 
-// From the place on, where that run of the row begins, if it spares more than so many bits. How
-// many pixels; 0: none.
+// Adds a match from that position on, where that run of the row begins, if it saves more than
+// `least_gain` bits. Returns its number of pixels; 0: none.
 std::uint32_t RunDeflater::add_match_with_past(const Place& place, std::size_t run,
                                                std::uint32_t least_gain) {
   past_.pass(run);
@@ -328,7 +329,7 @@ std::uint32_t RunDeflater::add_match_with_past(const Place& place, std::size_t r
   return pixels;
 }
 
-// From the pixel before, which is of the same row.
+// From the previous pixel, which is in the same row.
 bool RunDeflater::differs_in_opacity_only(const Place& place) const {
   constexpr std::uint32_t kColour = 0xffffff;
   return bytes_per_pixel_ == 4 && place.column > 0 &&
@@ -344,10 +345,10 @@ inline void RunDeflater::add_token(std::uint32_t token) {
   ++counts_[token];
 }
 
-// Longer ones become several.
+// Longer matches are split.
 void RunDeflater::add_match(std::uint32_t kind, std::uint32_t length) {
   while (length > 0) {
-    // None of the parts is too short.
+    // No part is too short.
     std::uint32_t part = std::min(length, kLongestMatch);
     if (length > part && length - part < kLeastMatch) part -= kLeastMatch;
     add_token(kind + part);
@@ -359,11 +360,11 @@ inline void RunDeflater::end_match_above() {
   if (length_above_ > 0) add_match(kAbove, std::exchange(length_above_, 0));
 }
 
-// Adler-32 (RFC 1950): the sum of the bytes, and the sum of all sums so far.
+// Adler-32 (RFC 1950): the sum of the bytes, and the sum of all partial sums.
 void RunDeflater::add_to_checksum(std::span<const PixelRun> runs) {
   const std::uint64_t size = bytes_per_pixel_;
   const std::uint64_t bytes_that_count = size == 4 ? 0xffffffff : 0xffffff;
-  // Each byte counts in all sums from its own on.
+  // Each byte is included in all partial sums from its own on.
   std::uint64_t sum = 0;
   std::uint64_t sums = 0;
   std::uint64_t begin = 0;
@@ -448,7 +449,7 @@ void RunDeflater::end_block(bool is_last) {
   begin_block();
 }
 
-/// Symbols of counts that are not 0 get codes, of at most so many bits.
+/// Assigns codes of at most that many bits to symbols with counts other than 0.
 template <std::size_t size>
 std::array<RunDeflater::Code, size> RunDeflater::make_codes(
     const std::array<std::uint32_t, size>& counts, int most_bits) {
@@ -481,8 +482,8 @@ std::array<RunDeflater::Code, size> RunDeflater::make_codes(
   return codes;
 }
 
-// The first bit is the lowest of the first byte. Eight bytes are stored for each token, and as many
-// kept as are full.
+// The first bit is the lowest one of the first byte. Eight bytes are stored for each token, of
+// which only the full ones are kept.
 void RunDeflater::write_tokens() {
   static_assert(std::endian::native == std::endian::little);
   constexpr std::size_t kMostBytesOfToken = 6;
@@ -514,7 +515,7 @@ inline RunDeflater::Code RunDeflater::code_of_distance(std::uint32_t distance) c
   return joined(past_codes_[symbol.symbol], symbol);
 }
 
-/// The lengths of all codes, run by run, by a code of their own.
+/// Writes the lengths of all codes, run-length encoded, with a code of their own.
 void RunDeflater::write_code_lengths(std::span<const Code, kLiterals> literal_codes,
                                      std::span<const Code, kDistances> distance_codes) {
   constexpr std::size_t kSymbols = 19;

@@ -1,9 +1,9 @@
-// Deflate (RFC 1951) of pictures that are runs of equal pixels.
+// Deflate (RFC 1951) for pictures that consist of runs of equal pixels.
 //
-// In such pictures nearly all that repeats is within a run, or is what lies right above, or, where
-// pixels have several bytes, was right after the same colour before: no search for matches is
-// needed, and the sum over the bytes of a run has a closed form. So compressing takes a time that
-// grows with the runs and not with the pixels.
+// In such pictures, nearly all repetition is within a run, or equals the row above, or, for pixels
+// of several bytes, follows an earlier occurrence of the same colour. So no search for matches is
+// needed, and the checksum of a run has a closed form. Compressing therefore takes time in
+// proportion to the runs and not to the pixels.
 #pragma once
 
 #include <array>
@@ -16,47 +16,46 @@
 
 namespace trapeze {
 
-constexpr std::uint32_t kLongestMatch = 258;  // of Deflate, in bytes
+constexpr std::uint32_t kLongestMatch = 258;  // in Deflate, in bytes
 
-/// Compresses one picture after the other, with working memory that it keeps. One thread at a time
-/// may use it.
+/// Compresses one picture after the other, with reused working memory. One thread at a time.
 class RunDeflater {
  public:
-  /// Begins a picture of so many columns, with pixels of 1, 3 or 4 bytes.
+  /// Starts a picture with that many columns and with pixels of 1, 3 or 4 bytes.
   void begin(std::uint32_t columns, std::uint32_t bytes_per_pixel);
-  /// Adds a row after those that were added: a byte 0, which is the filter that PNG has before each
-  /// row, and its pixels. Precondition: the runs follow one another and fill all columns.
+  /// Adds the next row: a byte 0, which is the filter type that PNG has before each row, and its
+  /// pixels. Precondition: the runs are consecutive and fill all columns.
   void add_row(std::span<const PixelRun> runs);
-  /// A zlib stream (RFC 1950) of all rows, which lasts until the next picture begins. It depends on
-  /// the rows only.
+  /// A zlib stream (RFC 1950) of all rows, valid until the next picture begins. It depends on the
+  /// rows only.
   std::span<const std::uint8_t> finish();
 
  private:
-  /// How a symbol, or a token, is written.
+  /// The code of a symbol, or of a token.
   struct Code {
     std::uint64_t bits = 0;
-    int length = 0;  // 0: it does not occur
+    int length = 0;  // 0: does not occur
   };
-  static constexpr std::size_t kLiterals = 286;  // and lengths, and the end of a block
+  static constexpr std::size_t kLiterals = 286;  // including lengths, and the end of a block
   static constexpr std::size_t kDistances = 30;
-  // Tokens: literals; then, by their length, matches with the pixel before, with the row above, and
-  // with what was before at the distance that comes as the next token.
+  // Tokens: literals; then, by length, matches with the previous pixel, with the row above, and
+  // with earlier data at the distance given by the next token.
   static constexpr std::uint32_t kRepeat = 256;
   static constexpr std::uint32_t kAbove = kRepeat + kLongestMatch + 1;
   static constexpr std::uint32_t kPast = kAbove + kLongestMatch + 1;
   static constexpr std::size_t kTokens = kPast + kLongestMatch + 1;
 
-  /// Where in a row.
+  /// A position in a row.
   struct Place {
     std::uint32_t column = 0;
-    const PixelRun* run = nullptr;    // of the row, which does not end before
-    const PixelRun* above = nullptr;  // of the row above
+    const PixelRun* run = nullptr;    // of the row; does not end before the column
+    const PixelRun* above = nullptr;  // run of the row above
     std::uint32_t begin = 0;          // of the run
   };
-  /// What is the same in the row above.
+  /// The part that equals the row above.
   struct Same {
     std::uint32_t pixels = 0;
-    std::uint32_t bits = 0;  // that it takes to write them, about
+    std::uint32_t bits = 0;  // approximate size if it were written
   };
 
   Same same_as_above(const Place& place) const;
@@ -89,20 +88,20 @@ class RunDeflater {
   std::uint32_t columns_ = 0;
   std::uint32_t bytes_per_pixel_ = 1;
   std::uint32_t stride_ = 1;           // bytes of a row
-  std::vector<PixelRun> above_;        // the runs of the row before; empty: there is none
-  std::vector<std::uint16_t> tokens_;  // with room for more
+  std::vector<PixelRun> above_;        // the runs of the previous row; empty: none
+  std::vector<std::uint16_t> tokens_;  // with spare room
   std::size_t token_count_ = 0;
   std::array<std::uint32_t, kTokens> counts_{};
-  std::array<std::uint32_t, kDistances> past_counts_{};  // of distances that are tokens
+  std::array<std::uint32_t, kDistances> past_counts_{};  // of distances, which are tokens
   std::array<Code, kTokens> codes_{};
   std::array<Code, kDistances> past_codes_{};
-  PastRuns past_;                   // of pixels of several bytes
-  std::uint32_t row_byte_ = 0;      // where the row begins
-  std::uint32_t length_above_ = 0;  // of a match with the row above that may go on
+  PastRuns past_;                   // for pixels of several bytes
+  std::uint32_t row_byte_ = 0;      // position of the row
+  std::uint32_t length_above_ = 0;  // of a match with the row above that may continue
   // Adler-32.
   std::uint64_t sum_ = 1;
   std::uint64_t sum_of_sums_ = 0;
-  // What is written.
+  // The output.
   std::vector<std::uint8_t> output_;
   std::uint64_t bits_ = 0;
   int bit_count_ = 0;

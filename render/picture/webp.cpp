@@ -8,7 +8,7 @@
 namespace trapeze {
 namespace {
 
-// Of 0 to 9: by a third smaller than 0 in less time, for tiles of cities; what is above takes more
+// From 0 to 9: a third smaller than with 0 and faster, for tiles of cities; higher values take more
 // time for a few percent.
 constexpr int kEffort = 2;
 

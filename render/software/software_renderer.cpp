@@ -10,13 +10,13 @@
 
 namespace trapeze {
 
-// Turns cells into pixels of the picture.
+// Converts cells to pixels of the picture.
 struct SoftwareRenderer::Frame {
   std::int64_t origin_x;
   std::int64_t origin_y;
   double columns_per_cell;
   double rows_per_cell;
-  double columns_per_row;  // of a square piece of the ground
+  double columns_per_row;  // of a square area on the ground
   double first_row;
   double width;
   double height;
@@ -48,27 +48,27 @@ struct SoftwareRenderer::Piece {
   double y_bottom;
 };
 
-// What of a piece lies in one row.
+// The part of a piece in one row.
 struct SoftwareRenderer::RowPiece {
   double x_from;
   double x_to;
-  std::int32_t height;  // of it, in units
+  std::int32_t height;  // in units
 };
 
-// How the shares of a side become units.
+// How the shares of a side are rounded to units.
 struct SoftwareRenderer::Rounding {
-  std::int32_t sign;  // positive for the left side of a trapezoid, negative for the right one
+  std::int32_t sign;  // positive for the left side of a trapezoid, negative for the right side
   double threshold;   // from 0 to 1
 };
 
 namespace {
 
-// For 0 <= value, where it is cheaper than std::floor.
+// For 0 <= value; cheaper than std::floor.
 int truncate(double value) {
   return static_cast<int>(value);
 }
 
-/// A number that looks like chance, by the bits of another one.
+/// A pseudo-random number derived from the bits of another one.
 std::uint64_t mixed(std::uint64_t bits) {
   const std::uint64_t product = (bits ^ bits >> 32) * 0x9e3779b97f4a7c15;
   return (product ^ product >> 29) * 0x94d049bb133111eb;
@@ -79,13 +79,14 @@ double threshold_of(std::uint64_t mixed_bits) {
   return static_cast<double>(static_cast<std::int64_t>(mixed_bits >> 40)) * 0x1p-24;
 }
 
-/// Of a place between the north of a row, 0, and its south, 1.
+/// For a position between the north of a row, 0, and its south, 1.
 std::int32_t units_of(double place) {
   return truncate(place * kUnitsPerPixel +
                   threshold_of(mixed(std::bit_cast<std::uint64_t>(place))));
 }
 
-/// For the shares of a trapezoid, by where its top and its bottom lie in their rows.
+/// The threshold for the shares of a trapezoid, derived from the positions of its top and its
+/// bottom within their rows.
 double threshold_between(double y_top, double y_bottom) {
   const auto bits = [](double y) { return std::bit_cast<std::uint64_t>(y - truncate(y)); };
   return threshold_of(mixed(bits(y_top) + 3 * bits(y_bottom)));
@@ -116,7 +117,7 @@ void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
   try {
     resolve(*task.out);
   } catch (...) {
-    release_memory();  // so that no areas are left behind for the next picture
+    release_memory();  // so that no areas remain for the next picture
     throw;
   }
   if (!is_wanted) throw Cancelled();
@@ -135,7 +136,7 @@ void SoftwareRenderer::release_memory() {
 
 void SoftwareRenderer::prepare(const View& view) {
   if (view.width == width_ && view.height == height_) return;
-  width_ = height_ = 0;  // what there is no memory for is prepared anew the next time
+  width_ = height_ = 0;  // if memory runs out below, the next call starts over
   stride_ = static_cast<std::size_t>(view.width) + 2;
   differences_.assign(stride_ * static_cast<std::size_t>(view.height), 0);
   sums_ = {};
@@ -146,7 +147,7 @@ void SoftwareRenderer::prepare(const View& view) {
 
 bool SoftwareRenderer::add(const MeshPart& part, const Frame& frame,
                            const Cancellation* cancellation) {
-  constexpr std::uint32_t kTrapezoids = 4096;  // between two looks at whether they are wanted
+  constexpr std::uint32_t kTrapezoids = 4096;  // between two checks for cancellation
   std::uint32_t since_look = 0;
   for (TrapezoidRange range : part.ranges) {
     while (range.count > 0) {
@@ -182,7 +183,7 @@ void SoftwareRenderer::add_trapezoid(const MeshView& mesh, const MeshTrapezoid& 
   const Point left_lower = mesh.vertices[left.lower];
   const Point right_upper = mesh.vertices[right.upper];
   const Point right_lower = mesh.vertices[right.lower];
-  // Either side may be the western one: where they are swapped, the area is negative.
+  // Either side may be the western one: if they are swapped, the area is negative.
   if (frame.x(std::max({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) <= 0) return;
   if (frame.x(std::min({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) >= frame.width)
     return;
@@ -210,8 +211,8 @@ void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y
   }
 }
 
-// Where an edge is off the picture, it counts as if it ran along the border that it is beyond: the
-// whole row is to its right then, or nothing.
+// An edge off the picture counts as if it ran along the border that it is beyond: either the whole
+// row is to its right, or nothing.
 void SoftwareRenderer::add_clipped(const Piece& piece, Rounding rounding) {
   const double width = width_;
   const Piece clamped{std::clamp(piece.x_top, 0.0, width), piece.y_top,
@@ -231,15 +232,15 @@ void SoftwareRenderer::add_clipped(const Piece& piece, Rounding rounding) {
   add_piece(inside, rounding);
 }
 
-// Adds a piece that stays within one row: its height is spread evenly. In the column that holds it,
-// what lies right of the piece is covered; in all columns further east the full height is, which
-// the running sum carries on.
+// Adds a piece within one row; its height is spread evenly. In the column that contains it, the
+// area to the right of the piece is covered. In all columns further east the full height is
+// covered, which the running sum carries on.
 inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, Rounding rounding) {
   const double low = std::min(piece.x_from, piece.x_to);
   const double high = std::max(piece.x_from, piece.x_to);
   const int first = truncate(low);
   const int last = truncate(high);
-  // The column after the last one is written too.
+  // The column after the last one is written, too.
   touched_.touch(static_cast<std::size_t>(row), static_cast<std::size_t>(first),
                  static_cast<std::size_t>(last) + 1);
   std::int32_t* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
@@ -253,7 +254,7 @@ inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, Rounding r
   if (first == last) {
     add_to(first, 1.0 - (0.5 * (low + high) - first));
   } else {
-    // What of the height lies west of a column is covered in all of it, the rest by half.
+    // The part of the height west of a column covers the whole column, the rest half of it.
     const double share_of_column = 1.0 / (high - low);
     double x = low;
     double west = 0;
@@ -269,7 +270,7 @@ inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, Rounding r
   cells[last + 1] += rounding.sign * (piece.height - sum);
 }
 
-// Adds a piece that lies in the picture, row by row; one without height adds nothing.
+// Adds a piece inside the picture, row by row; a piece without height adds nothing.
 void SoftwareRenderer::add_piece(const Piece& piece, Rounding rounding) {
   if (!(piece.y_top < piece.y_bottom)) return;
   const int first = truncate(piece.y_top);
@@ -280,7 +281,7 @@ void SoftwareRenderer::add_piece(const Piece& piece, Rounding rounding) {
     return;
   }
   const double slope = (piece.x_bottom - piece.x_top) / (piece.y_bottom - piece.y_top);
-  // Rounding must not carry a position out of the picture.
+  // Rounding must not move a position out of the picture.
   const auto [low, high] = std::minmax(piece.x_top, piece.x_bottom);
   double x = piece.x_top;
   for (int row = first; row < piece.y_bottom; ++row) {
@@ -293,7 +294,7 @@ void SoftwareRenderer::add_piece(const Piece& piece, Rounding rounding) {
   }
 }
 
-// Adds the differences so far to sums that have room for more, and begins anew.
+// Adds the differences so far to sums that have room for more, and resets them.
 void SoftwareRenderer::set_aside() {
   sums_.resize(differences_.size());
   for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += std::exchange(differences_[i], 0);
@@ -315,7 +316,7 @@ void SoftwareRenderer::resolve(Mask& out) {
     }
     std::int32_t* cells = differences_.data() + begin;
     resolve_row({cells, width}, touched, touched_.shift(), out);
-    // On the east border and beyond nothing is to be seen.
+    // Nothing is visible on the east border and beyond.
     cells[width] = cells[width + 1] = 0;
   }
   sums_ = {};

@@ -25,14 +25,14 @@
 namespace trapeze {
 namespace {
 
-// Hinted in height only: sharp rows, and widths that grow in proportion to the size.
+// Hinted in height only: sharp rows, and widths proportional to the size.
 constexpr FT_Int32 kLoadFlags = FT_LOAD_TARGET_LIGHT | FT_LOAD_NO_BITMAP;
 constexpr std::string_view kEllipsis = "\u2026";
 
-// In ems. Letters with marks above and below them are higher.
+// In ems. Letters with marks above and below them are taller.
 constexpr double kLineHeight = 1.2;
 constexpr double kLineHeightOfMarks = 1.6;
-constexpr int kMeasuredSize = 64;  // pixels: large enough for hinting to change nothing
+constexpr int kMeasuredSize = 64;  // pixels: large enough for hinting to have no effect
 
 struct CloseLibrary {
   void operator()(FT_Library library) const { FT_Done_FreeType(library); }
@@ -61,7 +61,7 @@ Library open_library() {
   return Library(library);
 }
 
-/// A font of a file that may be a collection.
+/// A font in a file that may be a collection.
 struct FontName {
   std::string file;
   FT_Long number = 0;
@@ -107,7 +107,7 @@ bool has(FT_Face face, char32_t character) {
   return FT_Get_Char_Index(face, character) != 0;
 }
 
-/// What belongs to the character before it.
+/// Whether a character belongs to the one before it.
 enum class Following { none, mark, joiner };
 
 Following following_of(char32_t character) {
@@ -123,7 +123,7 @@ Following following_of(char32_t character) {
   }
 }
 
-/// A glyph in its place on the line; lengths are in 64ths of a pixel, y upwards.
+/// A glyph at its position on the line; lengths are in 64ths of a pixel, y upwards.
 struct PlacedGlyph {
   FT_Face face;
   FT_UInt index;
@@ -153,15 +153,15 @@ void draw_glyph(const PlacedGlyph& glyph, int base, Rgba colour, Picture& pictur
   }
 }
 
-/// Whether letters of the script stand side by side, each for itself, but for kerning: Latin, Greek
-/// and Cyrillic with their punctuation; Chinese, Japanese and Korean.
+/// Whether letters of the script are independent of each other except for kerning: Latin, Greek and
+/// Cyrillic with their punctuation; Chinese, Japanese and Korean.
 bool stands_for_itself(char32_t c) {
   return (c >= 0x20 && c < 0x300) || (c >= 0x370 && c < 0x483) || (c >= 0x48a && c < 0x530) ||
          (c >= 0x1e00 && c < 0x2000) || (c >= 0x2010 && c < 0x2028) ||
          (c >= 0x3000 && c < 0xa000) || (c >= 0xac00 && c < 0xd7a4);
 }
 
-/// Of what is drawn of a bitmap, in a mask, the greater value.
+/// Draws a bitmap into a mask; each value becomes the greater one.
 void raise(const FT_Bitmap& bitmap, int left, int top, TextMask& mask,
            std::vector<std::uint8_t>& values) {
   for (int y = 0; y < static_cast<int>(bitmap.rows); ++y) {
@@ -177,8 +177,8 @@ void raise(const FT_Bitmap& bitmap, int left, int top, TextMask& mask,
   }
 }
 
-/// Adds a glyph to the letters, and with what the stroker puts around it to the halo, if there is a
-/// stroker. x and y, in 64ths of a pixel, y downwards, are where the glyph's origin is in the mask.
+/// Adds a glyph to the letters and, if there is a stroker, the glyph with its outline to the halo.
+/// x and y, in 64ths of a pixel, y downwards, are the position of the glyph's origin in the mask.
 void add_glyph(const PlacedGlyph& glyph, FT_Pos x, FT_Pos y, FT_Stroker stroker, TextMask& mask) {
   FT_GlyphSlot slot = glyph.face->glyph;
   if (FT_Load_Glyph(glyph.face, glyph.index, kLoadFlags) != 0) return;
@@ -208,7 +208,7 @@ void add_glyph(const PlacedGlyph& glyph, FT_Pos x, FT_Pos y, FT_Stroker stroker,
   if (stroker != nullptr) draw(mask.halo, true);
 }
 
-/// The longest beginning of at most so many bytes that does not end within a character.
+/// The longest prefix of at most that many bytes that does not end within a character.
 std::string_view beginning_of(std::string_view text, std::size_t bytes) {
   if (bytes >= text.size()) return text;
   while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;
@@ -244,7 +244,7 @@ class Fonts::Faces {
     return text;
   }
 
-  /// To be locked as long as faces are used.
+  /// Must be locked while faces are used.
   std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
 
   ShapedLine shape(std::string_view line, double size) {
@@ -267,7 +267,7 @@ class Fonts::Faces {
     return shaped;
   }
 
-  /// A halo of that width, in pixels.
+  /// A stroker for a halo of that width, in pixels.
   Stroker stroker(double width) {
     FT_Stroker made = nullptr;
     if (FT_Stroker_New(library_.get(), &made) != 0) throw std::bad_alloc();
@@ -341,7 +341,7 @@ class Fonts::Faces {
     return layout;
   }
 
-  /// Of a character with its marks.
+  /// The end of a character with its marks.
   static std::size_t end_of_cluster(const std::u32string& text, std::size_t begin) {
     std::size_t end = begin + 1;
     while (end < text.size() && following_of(text[end]) != Following::none) ++end;
@@ -361,7 +361,7 @@ class Fonts::Faces {
     return found == faces_.end() ? nullptr : found->get();
   }
 
-  /// The same, or else the first that has the first character, or else the first of all.
+  /// The same, or else the first face that has the first character, or else the first face.
   FT_Face face_for(const std::u32string& text, std::size_t begin, std::size_t end) const {
     if (FT_Face found = find_face_for(text, begin, end)) return found;
     const auto has_first = [&](const Face& face) { return has(face.get(), text[begin]); };
@@ -370,10 +370,10 @@ class Fonts::Faces {
   }
 
   std::mutex mutex_;
-  Library library_ = open_library();  // outlives the faces
+  Library library_ = open_library();  // must outlive the faces
   std::vector<Face> faces_;
-  FT_F26Dot6 size_ = 0;                            // of all faces; 0: not yet set
-  std::unordered_map<char32_t, double> advances_;  // in ems, of letters that stand for themselves
+  FT_F26Dot6 size_ = 0;                            // of all faces; 0: not set yet
+  std::unordered_map<char32_t, double> advances_;  // in ems, for independent letters
 };
 
 Fonts::Fonts() : faces_(std::make_unique<Faces>()) {}
@@ -435,7 +435,7 @@ TextMask Fonts::mask_of(std::span<const std::string> lines, double size, double 
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   TextMask mask{width, height, std::vector<std::uint8_t>(pixels), {}};
   mask.halo = mask.letters;
-  // Between the baseline and the top of capitals is the middle of a line: that is about 0.36 ems
+  // The middle of a line is halfway between the baseline and the top of capitals: about 0.36 ems
   // above the baseline in the fonts of most scripts.
   constexpr double kMiddle = 0.36;
   double base =
@@ -451,7 +451,7 @@ TextMask Fonts::mask_of(std::span<const std::string> lines, double size, double 
     }
     base += line_height;
   }
-  // Few steps, so that pictures have few colours.
+  // In a few steps, so that pictures have few colours.
   const auto in_steps = [](std::uint8_t value) {
     constexpr int kStep = 17;
     return static_cast<std::uint8_t>((value + kStep / 2) / kStep * kStep);

@@ -32,13 +32,13 @@ struct TextStyle {
 
 constexpr int kMostTextSize = 256;
 
-/// How much of each pixel the letters of a text cover, and how much they cover together with the
+/// How much of each pixel is covered by the letters of a text, and by the letters together with the
 /// halo around them: 0 to 255. Column 0 of row 0 is the north-west pixel.
 struct TextMask {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> letters;  // row by row
-  std::vector<std::uint8_t> halo;     // the same; nowhere less than letters
+  std::vector<std::uint8_t> halo;     // row by row; never less than letters
 };
 
 class Fonts {
@@ -46,7 +46,7 @@ class Fonts {
   /// Longer lines are truncated, so that the work is bounded for any text.
   static constexpr std::size_t kMostCharacters = 512;
 
-  /// Without fonts; every text then has no width.
+  /// Without fonts, every text has zero width.
   Fonts();
   ~Fonts();
   Fonts(const Fonts&) = delete;
@@ -58,14 +58,14 @@ class Fonts {
   void add(const std::string& file);
   bool is_empty() const;
 
-  /// Equal for fonts, and libraries, that draw any text alike.
+  /// Equal for fonts and libraries that draw all text in the same way.
   std::string identity() const;
 
   /// The width of a line in pixels, rounded up. `line` is UTF-8, read as characters_of_line() does.
   int width_of(std::string_view line, int size) const;
 
-  /// The line if it is at most `width` pixels wide, or else the longest beginning of it that is
-  /// with an ellipsis; an ellipsis alone if none is.
+  /// The line if it is at most `width` pixels wide; otherwise its longest prefix that is with an
+  /// ellipsis appended; an ellipsis alone if none is.
   std::string fitted(std::string_view line, int size, int width) const;
 
   /// Draws a line of text that begins at column `left`, its baseline being the upper side of row
@@ -74,20 +74,20 @@ class Fonts {
             Picture& picture) const;
 
   struct Extent {
-    double width = 0;   // in ems; a line that is drawn is at most that wide, give or take a pixel
-    double height = 0;  // in ems: from line to line, so that letters of neither meet
+    double width = 0;   // in ems; a drawn line is at most that wide, within a pixel
+    double height = 0;  // in ems: the line spacing at which letters do not touch
   };
-  /// The room that a line takes at any size. Quick where letters are not combined: of scripts in
-  /// which each stands for itself, their widths are added up.
+  /// The extent of a line at any size. Fast for scripts whose letters are independent: their widths
+  /// are added up.
   Extent extent_of(std::string_view line) const;
 
-  /// Whether the fonts have all characters of the line: otherwise boxes stand for some.
+  /// Whether the fonts have all characters of the line; otherwise some are drawn as boxes.
   bool can_write(std::string_view line) const;
 
-  /// The lines one below the other, each in the middle from west to east. The middle of the text,
-  /// from which half of `line_height` per line reaches upwards and downwards, is the middle of the
-  /// mask, where the corners of four pixels meet. What reaches out of the mask is cut off. `size`,
-  /// 1 to kMostTextSize, and `halo`, its width, 0 or more, are in pixels.
+  /// Draws the lines below each other, each centred horizontally. The text, with a height of
+  /// `line_height` per line, is centred vertically, on the middle of the mask, where the corners of
+  /// four pixels meet. Anything outside the mask is cut off. `size`, 1 to kMostTextSize, and
+  /// `halo`, its width, 0 or more, are in pixels.
   TextMask mask_of(std::span<const std::string> lines, double size, double line_height, double halo,
                    int width, int height) const;
 

@@ -5,10 +5,10 @@ namespace {
 
 constexpr char32_t kReplacement = 0xfffd;
 
-/// How a character begins: its length, and what its second byte may be, so that it is neither
-/// written longer than it has to be, nor a surrogate, nor beyond U+10FFFF (Unicode, table 3-7).
+/// How a character begins: its length, and the valid range of its second byte, which excludes
+/// overlong forms, surrogates and code points beyond U+10FFFF (Unicode, table 3-7).
 struct Lead {
-  std::size_t length = 0;  // in bytes; 0: no character begins so
+  std::size_t length = 0;  // in bytes; 0: not a valid first byte
   unsigned char least = 0x80;
   unsigned char most = 0xbf;
 };
@@ -28,7 +28,7 @@ Lead lead_of(unsigned char byte) {
   return {};
 }
 
-/// Takes the first character off `text`, which is not empty.
+/// Removes the first character from `text`, which must not be empty.
 char32_t take_character(std::string_view& text) {
   const auto byte_at = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const Lead lead = lead_of(byte_at(0));

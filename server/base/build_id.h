@@ -1,4 +1,4 @@
-// Which program this is.
+// Identifies the program.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@ namespace trapeze {
 /// The version of the project, "0.1.0".
 std::string version();
 
-/// Identifies the machine code that runs, so that what another build made is not mistaken for what
-/// this one would make. Never empty.
+/// Identifies the machine code that is running, so that data made by another build is not mistaken
+/// for what this one would make. Never empty.
 const std::string& build_id();
 
 }  // namespace trapeze

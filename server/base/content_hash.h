@@ -1,5 +1,5 @@
-// A hash for recognising contents (entity tags): XXH3, stable across runs and machines, not against
-// attackers.
+// A hash for recognising contents (entity tags): XXH3, stable across runs and machines, not secure
+// against attackers.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -21,19 +21,19 @@ class ContentHash {
   ContentHash& operator=(const ContentHash&) = delete;
 
   void add(std::uint64_t word);
-  /// Its length counts, so that texts that follow each other cannot be taken for other ones.
+  /// The length is hashed, too, so that a sequence of texts is unambiguous.
   void add(std::string_view text);
 
-  /// T has no padding, so that equal values are equal bytes.
+  /// T must have no padding, so that equal values have equal bytes.
   template <typename T>
   void add(std::span<const T> values) {
     static_assert(std::has_unique_object_representations_v<T>);
     add(std::string_view(reinterpret_cast<const char*>(values.data()), values.size_bytes()));
   }
 
-  /// 64 bits of all that was added.
+  /// The 64-bit hash of everything added.
   std::uint64_t value() const;
-  /// 128 bits of it, as 32 hex digits.
+  /// The 128-bit hash of everything added, as 32 hex digits.
   std::string hex() const;
 
  private:

@@ -7,11 +7,10 @@
 
 namespace trapeze {
 
-/// The first 160 bits of SHA-256, as 40 hex digits: nobody can find two texts with the same one.
+/// The first 160 bits of SHA-256, as 40 hex digits: nobody can find two texts with the same digest.
 /// Any thread.
 std::string digest_of(std::string_view text);
-/// The same of texts that follow each other: where one ends and the next begins makes no
-/// difference.
+/// The same for the concatenation of texts: the boundaries between them do not matter.
 std::string digest_of(std::span<const std::string_view> parts);
 
 }  // namespace trapeze

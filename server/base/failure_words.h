@@ -1,4 +1,4 @@
-// What is told of an exception that ends what was to be done.
+// Messages for exceptions that end an operation.
 #pragma once
 
 #include <exception>
@@ -6,10 +6,10 @@
 
 namespace trapeze {
 
-/// The words of the exception, which name what they are about; of memory or threads that cannot be
-/// had, that it is they.
+/// The message of the exception, which names its object; if memory or threads are not available, a
+/// message that says so.
 std::string failure_words(const std::exception& error);
-/// The same of what was to be done with a file, which is named.
+/// The same for an operation on a file, which the message names.
 std::string failure_words(const std::exception& error, const std::string& file);
 
 }  // namespace trapeze

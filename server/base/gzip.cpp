@@ -8,8 +8,8 @@
 namespace trapeze {
 namespace {
 
-constexpr int kGzipWindow = 15 + 16;  // the largest, with the header of gzip
-constexpr int kGzipMemory = 9;        // the most
+constexpr int kGzipWindow = 15 + 16;  // maximum window, with a gzip header
+constexpr int kGzipMemory = 9;        // maximum
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Compression as gzip(1) does it.
+// Compression compatible with gzip(1).
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,15 @@ namespace trapeze {
 
 constexpr int kMostGzipLevel = 9;
 
-/// What is longer is not compressed at once.
+/// Longer input cannot be compressed in one call.
 constexpr std::size_t kMostGzipBytes = 0xffffffff;
 
-/// Level 1 is the quickest, kMostGzipLevel gives the fewest bytes. Equal bytes become equal ones:
-/// there is no time in them. Any thread.
+/// Level 1 is the fastest, kMostGzipLevel gives the smallest output. Equal input gives equal
+/// output: no time is stored. Any thread.
 std::string gzip(std::string_view bytes, int level);
 
-/// What was compressed. Nothing if it is not that, or longer than `most`. Any thread.
+/// Decompresses. Nothing if the input is not valid, or the output is longer than `most`. Any
+/// thread.
 std::optional<std::string> gunzip(std::string_view bytes, std::size_t most);
 
 }  // namespace trapeze

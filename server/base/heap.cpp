@@ -5,12 +5,13 @@
 namespace trapeze {
 namespace {
 
-// The C library would raise this to the size of what was freed last, up to 32 MB: arrays of layers
-// would then lie among all else, and leave holes that stay. What is drawn is mostly smaller.
+// The C library would raise this threshold to the size of the block freed last, up to 32 MB: arrays
+// of layers would then be allocated among everything else, and leave permanent holes. Memory for
+// drawing is usually smaller.
 constexpr int kLargeArray = 1 << 20;  // bytes
-// Once the above is set, this is no longer adapted either. It is room for what is drawn, which is
-// needed again at once: of a map that fills a screen, too, for which the kernel would otherwise
-// find and clear the same pages anew at every band.
+// Once the threshold above is set, this one is no longer adapted either. It keeps memory for
+// drawing, which is needed again immediately, also when a map fills a screen. Otherwise the kernel
+// would have to find and clear the same pages again for every band.
 constexpr int kKeptAtTheEnd = 16 << 20;  // bytes
 
 }  // namespace

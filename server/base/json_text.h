@@ -1,5 +1,5 @@
-// How documents become JSON text: one way for all. For sources only: no header of the server needs
-// to know the JSON library.
+// Serialises JSON documents in the same way everywhere. Include it in source files only: no header
+// of the server needs to know the JSON library.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,16 +10,16 @@
 
 namespace trapeze {
 
-/// Keeps its members in the order in which they were added.
+/// Keeps its members in insertion order.
 using Json = nlohmann::ordered_json;
 
-/// Indented, with a line end; what is not UTF-8 is replaced.
+/// Indented, with a final line end; invalid UTF-8 is replaced.
 std::string to_text(const Json& json);
 
-/// Integers keep all of their 64 bits; numbers that are not finite become null.
+/// Integers keep all 64 bits; numbers that are not finite become null.
 Json to_json(const Value& value);
 
-/// "#rrggbb"; the opacity is told apart from it.
+/// "#rrggbb"; the opacity is written separately.
 std::string css_colour(Rgba colour);
 
 }  // namespace trapeze

@@ -1,4 +1,4 @@
-// Tags of languages, such as de or zh-Hans (BCP 47).
+// Language tags, such as de or zh-Hans (BCP 47).
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace trapeze {
 
-/// Whether the text is built as a tag is: 2 or 3 letters, and then subtags of 1 to 8 letters or
-/// digits, each after a '-'; not whether there is such a language. At most 35 bytes.
+/// Whether the text has the form of a tag: 2 or 3 letters, followed by subtags of 1 to 8 letters or
+/// digits, each after a '-', and at most 35 bytes. Does not check whether the language exists.
 constexpr bool is_language_tag(std::string_view text) {
   constexpr std::size_t kMostBytes = 35;
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };

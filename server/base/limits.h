@@ -1,4 +1,4 @@
-// Bounds of what one request may ask for; an operator may set lower ones (LimitsConfig).
+// Upper limits for a single request; operators may set lower ones (LimitsConfig).
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,6 @@ namespace trapeze {
 constexpr std::size_t kMaxTargetLength = 4096;  // bytes of path and query together
 constexpr std::size_t kMaxLayersPerTile = 16;
 constexpr int kMaxScale = 4;
-constexpr std::uint64_t kMaxMapPixels = 67'108'864;  // of a picture of a window: 8192 x 8192
+constexpr std::uint64_t kMaxMapPixels = 67'108'864;  // of the picture of a window: 8192 x 8192
 
 }  // namespace trapeze

@@ -1,4 +1,4 @@
-// A map with a budget of memory: the least recently used entries are evicted.
+// A map with a memory budget: the least recently used entries are evicted.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -15,10 +15,10 @@ namespace trapeze {
 template <typename Key, typename Value, typename Hash = std::hash<Key>>
 class LruMap {
  public:
-  /// `budget` in bytes, as the entries say.
+  /// `budget` is in bytes, as stated for each entry.
   explicit LruMap(std::size_t budget) : budget_(budget) {}
 
-  /// Null if it is not there. An entry that is found counts as used now.
+  /// Null if there is no such entry. A found entry becomes the most recently used.
   Value* find(const Key& key) {
     const auto found = by_key_.find(key);
     if (found == by_key_.end()) return nullptr;
@@ -26,8 +26,8 @@ class LruMap {
     return &found->second->value;
   }
 
-  /// Adds an entry that is not there yet, and evicts others until it fits; it is kept even if it is
-  /// larger than the budget. References to other values are invalid afterwards.
+  /// Adds an entry whose key is not in the map yet, and evicts others until it fits; it is kept
+  /// even if it is larger than the budget. References to other values are invalid afterwards.
   Value& insert(const Key& key, Value value, std::size_t bytes) {
     assert(!by_key_.contains(key));
     entries_.push_front({key, std::move(value), bytes});
@@ -37,7 +37,7 @@ class LruMap {
     return entries_.front().value;
   }
 
-  /// Nothing happens if it is not there.
+  /// Does nothing if there is no such entry.
   void erase(const Key& key) {
     const auto found = by_key_.find(key);
     if (found == by_key_.end()) return;
@@ -64,7 +64,7 @@ class LruMap {
 
   std::size_t budget_;
   std::size_t bytes_ = 0;
-  std::list<Entry> entries_;  // the last used first
+  std::list<Entry> entries_;  // most recently used first
   std::unordered_map<Key, typename std::list<Entry>::iterator, Hash> by_key_;
 };
 

@@ -8,12 +8,11 @@ namespace trapeze {
 namespace {
 
 constexpr std::size_t kLettersASlip = 3;
-constexpr std::size_t kLongestName = 64;  // what is longer is no mistyped name, and may be hostile
+constexpr std::size_t kLongestName = 64;  // longer text is not a mistyped name, and may be hostile
 
-/// Edit distance in which neighbours that have changed places count once (optimal string
-/// alignment).
+/// Edit distance in which swapping two neighbours counts once (optimal string alignment).
 std::size_t slips_between(const std::string& a, const std::string& b) {
-  using Row = std::vector<std::size_t>;  // by letters of b
+  using Row = std::vector<std::size_t>;  // by letter of b
   Row before(b.size() + 1);
   Row above(b.size() + 1);
   Row row(b.size() + 1);

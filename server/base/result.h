@@ -1,4 +1,4 @@
-// What was asked for, or what is wrong with the request.
+// The result of a request, or what is wrong with it.
 #pragma once
 
 #include <cassert>
@@ -29,14 +29,14 @@ class [[nodiscard]] Result {
 
   explicit operator bool() const { return outcome_.index() == 0; }
 
-  /// The value, which must be there.
+  /// The value. There must be one.
   const T& operator*() const& { return *value(); }
   T& operator*() & { return *value(); }
   T&& operator*() && { return std::move(*value()); }
   const T* operator->() const { return value(); }
   T* operator->() { return value(); }
 
-  /// Why there is no value; there must be none.
+  /// The reason why there is no value. There must be no value.
   const Problem& problem() const& { return *fault(); }
   Problem& problem() & { return *fault(); }
   Problem&& problem() && { return std::move(*fault()); }

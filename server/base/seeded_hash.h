@@ -1,5 +1,5 @@
-// A hash for tables of what clients send: nobody outside knows which keys meet in one slot, as it
-// differs from process to process.
+// A hash for tables with data from clients. It differs from process to process, so attackers cannot
+// predict which keys collide.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace trapeze {
 
-/// Equal within one process. Any thread.
+/// Equal for equal texts within one process. Any thread.
 std::uint64_t seeded_hash(std::string_view text);
 
 }  // namespace trapeze

@@ -24,7 +24,7 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
 }
 
-/// Calls `take` with each piece of `text` between separators, until it answers false.
+/// Calls `take` for each piece of `text` between separators, until it returns false.
 template <typename Take>
 bool for_each_piece(std::string_view text, char separator, Take take) {
   while (true) {
@@ -47,9 +47,9 @@ std::string to_lower(std::string_view text) {
   return lower;
 }
 
-/// Where the port begins, with its colon, or the host ends.
+/// The position of the port including its colon, or the end of the host.
 std::size_t end_of_host_name(std::string_view host) {
-  const std::size_t bracket = host.find(']');  // of an IPv6 address, in which there are colons
+  const std::size_t bracket = host.find(']');  // of an IPv6 address, which contains colons
   return std::min(host.find(':', bracket == std::string_view::npos ? 0 : bracket), host.size());
 }
 

@@ -1,4 +1,4 @@
-// The parts of a request target, decoded strictly: what is not well formed is refused, not guessed.
+// The parts of a request target, decoded strictly: malformed text is refused, not guessed.
 #pragma once
 
 #include <optional>
@@ -10,28 +10,30 @@
 
 namespace trapeze {
 
-/// Views into the target that it was split from, which must outlive it.
+/// Views into the target that was split, which must outlive it.
 struct Target {
   std::string_view path;   // still encoded; begins with '/'
   std::string_view query;  // still encoded, without '?'
 };
 
-/// Splits "/path?query", or the absolute form "http://host/path?query". Nothing if it is neither.
+/// Splits "/path?query", or the absolute form "http://host/path?query". Nothing for other text.
 std::optional<Target> split_target(std::string_view target);
 
 enum class Plus { literal, space };
 
-/// Nothing if a '%' is not followed by two hex digits, or if the result holds a control character.
+/// Nothing if a '%' is not followed by two hex digits, or if the result contains a control
+/// character.
 std::optional<std::string> percent_decode(std::string_view text, Plus plus);
 
-/// Whether the text has a control character, which no URL can hold, not even encoded.
+/// Whether the text contains a control character, which no URL may contain, not even encoded.
 bool has_control_character(std::string_view text);
 
-/// Everything but letters, digits and -._~ is encoded, so the result can stand anywhere in a URL.
+/// Encodes everything except letters, digits and -._~, so the result can be used anywhere in a URL.
 std::string percent_encode(std::string_view text);
 
-/// The decoded segments between the slashes of a path ("/a/b" has two, "/" has one, empty).
-/// A decoded segment may hold anything printable, slashes too. Nothing if one is malformed.
+/// The decoded segments between the slashes of a path ("/a/b" has two, "/" has one, which is
+/// empty). A decoded segment may contain anything printable, including slashes. Nothing if one is
+/// malformed.
 std::optional<std::vector<std::string>> decode_path(std::string_view path);
 
 using QueryPair = std::pair<std::string, std::string>;
@@ -42,15 +44,16 @@ std::optional<std::vector<QueryPair>> decode_query(std::string_view query);
 
 constexpr std::size_t kMaxUrlNameLength = 64;
 
-/// Whether `name` can stand for a layer or a style in a URL: 1 to 64 of A-Z, a-z, 0-9, '_' and '-'.
+/// Whether `name` is valid as the name of a layer or a style in a URL: 1 to 64 of A-Z, a-z, 0-9,
+/// '_' and '-'.
 bool is_url_name(std::string_view name);
 
-/// Whether `host` can be the Host of an absolute URL: a name, an IPv4 or a bracketed IPv6 address,
-/// with or without a port.
+/// Whether `host` is valid as the host of an absolute URL: a name, an IPv4 or a bracketed IPv6
+/// address, with or without a port.
 bool is_valid_host(std::string_view host);
 
-/// Whether one of `allowed` stands for the valid host: the same in any case of letters; without a
-/// port, for every port; "*.name" for every name that ends with ".name".
+/// Whether one of `allowed` matches the valid host, ignoring case: an entry without a port matches
+/// every port; "*.name" matches every name that ends with ".name".
 bool is_allowed_host(std::string_view host, std::span<const std::string> allowed);
 
 }  // namespace trapeze

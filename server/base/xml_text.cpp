@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";
 
-/// How many bytes the character at the beginning of `text` takes, 0 if there is none.
+/// The length in bytes of the character at the beginning of `text`, 0 if it is invalid.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return 1;

@@ -6,8 +6,8 @@
 
 namespace trapeze {
 
-/// Safe between tags and in attributes: markup is escaped; what is not UTF-8, and the characters
-/// that XML 1.0 does not allow, become U+FFFD.
+/// Safe between tags and in attributes: markup is escaped; invalid UTF-8, and characters that XML
+/// 1.0 does not allow, become U+FFFD.
 std::string xml_escape(std::string_view text);
 
 }  // namespace trapeze

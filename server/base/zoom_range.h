@@ -1,4 +1,4 @@
-// Zooms of tiles, from one to another.
+// A range of zooms of tiles.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 
 namespace trapeze {
 
-/// Both ends are part of it.
+/// Both ends are included.
 struct ZoomRange {
   int first = 0;
   int last = 0;
@@ -14,7 +14,8 @@ struct ZoomRange {
   friend bool operator==(const ZoomRange&, const ZoomRange&) = default;
 };
 
-/// "3-12", or one zoom; nothing if it is neither, or not between 0 and kMaxZoom. Any thread.
+/// Parses "3-12", or a single zoom; nothing for other text, or if a zoom is not between 0 and
+/// kMaxZoom. Any thread.
 std::optional<ZoomRange> parse_zooms(std::string_view text);
 
 }  // namespace trapeze

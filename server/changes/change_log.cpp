@@ -24,7 +24,7 @@ std::string text_of(const TileId& tile) {
   return fmt::format("{}/{}/{}", tile.z, tile.x, tile.y);
 }
 
-/// Leaves out zooms from the first on of which more tiles are listed.
+/// Leaves out all zooms from the first one on with more listed tiles than that.
 void limit_tiles(std::size_t most_tiles, ChangedLayer& layer) {
   std::map<int, std::size_t> tiles_of;
   for (const TileId& tile : layer.tiles.tiles) ++tiles_of[tile.z];
@@ -37,7 +37,7 @@ void limit_tiles(std::size_t most_tiles, ChangedLayer& layer) {
   }
 }
 
-/// The changes of several steps that follow each other, as if they were one.
+/// Combines the changes of consecutive steps into one.
 void add(const ChangedLayer& more, std::size_t most_tiles, ChangedLayer& sum) {
   sum.is_everything = sum.is_everything || more.is_everything;
   sum.tiles.is_complete = sum.tiles.is_complete && more.tiles.is_complete;
@@ -81,9 +81,9 @@ std::string table_of(const ServedLayer& layer) {
   return ids;
 }
 
-/// Whether its tiles may look different although its features are the same, where a request says
-/// nothing: its own style has changed, its zooms, the colour that it has without a fill, or, as
-/// classes are of all of them, any of the values by which it is coloured.
+/// Whether the layer's tiles may look different without a style in the request although its
+/// features are the same: because of changes of its own style, its zooms, its default fill, or any
+/// of the values by which it is coloured, since classes depend on all of them.
 bool is_shown_otherwise(const ServedLayer& before, std::size_t position_before,
                         const ServedLayer& after, std::size_t position_after) {
   const LayerConfig& old = before.config;
@@ -130,12 +130,12 @@ void ChangeLog::note(std::shared_ptr<const Dataset> before, std::shared_ptr<cons
   wake_.notify_all();
 }
 
-/// One that has not been compared yet becomes one with the next, so that the command is told of
-/// both.
+/// A step that has not been compared yet is merged into the next one, so that the command is
+/// notified of both.
 void ChangeLog::drop_oldest() {
   const Step& oldest = *steps_.front();
   if (!oldest.is_taken) {
-    Step& next = *steps_[1];  // which has not been taken either
+    Step& next = *steps_[1];  // not taken yet either
     next.since = oldest.since;
     next.before = oldest.before;
   }
@@ -200,7 +200,7 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
         auto found = changed_tiles(request, step.before, step.after);
         layer.is_everything = !found;
         if (found) layer.tiles = *std::move(found);
-      } catch (const std::exception& error) {  // for lack of memory
+      } catch (const std::exception& error) {  // when memory runs out
         spdlog::error("changes of layer {}: {}", name, failure_words(error));
         layer.is_everything = true;
       }
@@ -248,7 +248,7 @@ void ChangeLog::run_command(const Sum& changes) {
 ChangeLog::Answer ChangeLog::between(std::string_view since, std::string_view generation) const {
   if (since == generation) return {Answer::State::known, {}};
   const std::lock_guard lock(mutex_);
-  // The last time that the data was in that state, as it may come back to it.
+  // The last time that the data was in that state, as the same state may occur again.
   const auto first = std::find_if(steps_.rbegin(), steps_.rend(),
                                   [&](const auto& step) { return step->since == since; });
   if (first == steps_.rend()) return {};
@@ -259,7 +259,7 @@ ChangeLog::Answer ChangeLog::between(std::string_view since, std::string_view ge
     if ((*step)->generation != generation) continue;
     return {Answer::State::known, in_order(by_name)};
   }
-  return {Answer::State::pending, {}};  // it is served, and will be noted at once
+  return {Answer::State::pending, {}};  // being served, and noted in a moment
 }
 
 std::string change_lines(const std::vector<ChangedLayer>& layers) {

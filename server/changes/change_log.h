@@ -1,5 +1,5 @@
-// What has changed from one state of the data to the next, as the server takes it up: kept for
-// those who ask which tiles to purge, and given to a command.
+// The changes from each state of the data served to the next: kept for clients that request which
+// tiles to purge, and passed to a command.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -21,12 +21,12 @@
 
 namespace trapeze {
 
-/// Of one layer, between two states.
+/// The changes of one layer between two states.
 struct ChangedLayer {
   std::string name;
-  bool is_everything = false;  // it has come or gone, or could not be compared
-  /// Otherwise: that may look different in any style with the layer's own simplify, but for styles
-  /// that name ids.
+  bool is_everything = false;  // it was added or removed, or could not be compared
+  /// Otherwise: the tiles that may look different in any style with the layer's own simplify,
+  /// except styles that name ids.
   ChangedTiles tiles;
 };
 
@@ -34,32 +34,34 @@ class ChangeLog {
  public:
   struct Options {
     ZoomRange zooms;
-    /// Of one zoom of a layer: where more have changed, tiles are listed up to the zoom before it.
+    /// For one zoom of a layer: if more tiles changed, only those of the zooms before it are
+    /// listed.
     std::size_t most_tiles = 100'000;
-    /// For /bin/sh. Its input has a line for each tile, "LAYER Z/X/Y", and for a layer of which
-    /// everything may have changed from some zoom on, "LAYER Z/*"; TRAPEZE_SINCE and
-    /// TRAPEZE_GENERATION in its environment are the generations between which that is. What
-    /// changes while it runs is told when it has ended, all at once. Empty: none.
+    /// Run by /bin/sh. Its standard input has a line for each tile, "LAYER Z/X/Y", and a line
+    /// "LAYER Z/*" for a layer of which everything may have changed from that zoom on. The
+    /// environment variables TRAPEZE_SINCE and TRAPEZE_GENERATION contain the two generations.
+    /// Changes made while it runs are combined and passed on when it has finished. Empty: no
+    /// command.
     std::string command;
   };
 
   explicit ChangeLog(Options options);
-  /// Ends a command that is running, as end_command() does.
+  /// Terminates a running command, as end_command() does.
   ~ChangeLog();
   ChangeLog(const ChangeLog&) = delete;
   ChangeLog& operator=(const ChangeLog&) = delete;
 
-  /// Takes note that one follows the other, and compares them in a thread of its own.
+  /// Records that `after` follows `before`; they are compared in a thread of this object.
   void note(std::shared_ptr<const Dataset> before, std::shared_ptr<const Dataset> after);
 
   struct Answer {
     enum class State { known, pending, unknown } state = State::unknown;
     std::vector<ChangedLayer> layers;  // if known
   };
-  /// What has changed between the two generations, if both are among the last few.
+  /// The changes between the two generations, if both are among the last few.
   Answer between(std::string_view since, std::string_view generation) const;
 
-  /// Ends a command that is running, and waits for that; no other is started.
+  /// Terminates a running command and waits for that; no other one is started.
   void end_command();
 
   ZoomRange zooms() const { return options_.zooms; }
@@ -68,13 +70,13 @@ class ChangeLog {
   struct Step {
     std::string since;
     std::string generation;
-    std::shared_ptr<const Dataset> before;  // until they have been compared
+    std::shared_ptr<const Dataset> before;  // kept until they have been compared
     std::shared_ptr<const Dataset> after;
     std::vector<ChangedLayer> layers;
-    bool is_taken = false;  // by the thread that compares
+    bool is_taken = false;  // by the comparing thread
     bool is_compared = false;
   };
-  /// Several steps that follow each other, as one.
+  /// Several consecutive steps combined.
   struct Sum {
     std::string since;
     std::string generation;
@@ -88,18 +90,18 @@ class ChangeLog {
   void run_command(const Sum& changes);
 
   const Options options_;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   std::condition_variable wake_;
   std::deque<std::shared_ptr<Step>> steps_;
-  std::optional<Sum> untold_;  // what the command has not been told yet
+  std::optional<Sum> untold_;  // not yet passed to the command
   bool is_stopping_ = false;
   std::thread comparing_;
   std::thread telling_;  // runs if there is a command
 };
 
-/// As lines for a command.
+/// The lines for a command.
 std::string change_lines(const std::vector<ChangedLayer>& layers);
-/// As JSON, for /changes.
+/// The JSON for /changes.
 std::string changes_json(std::string_view since, std::string_view generation,
                          const std::vector<ChangedLayer>& layers);
 

@@ -18,11 +18,11 @@
 namespace trapeze {
 namespace {
 
-/// Dust is gathered from that far away, in pixels, and small polygons are drawn as large as one.
+/// How far away dust is collected, and how far enlarged small polygons reach, in pixels.
 constexpr double kReachOfDust = 3;
 
-/// The same for a style that draws a feature otherwise all over if another lies over it, or under
-/// it: rounds no corner of it, and lets nothing of it grow.
+/// The changes for styles in which an overlap affects the drawing of a whole feature: overlapping
+/// features have no rounded corners and do not grow.
 LayerChanges with_all_of_pairs(LayerChanges changes) {
   std::vector<LayerChanges::Place> others;
   for (LayerChanges::Place& place : changes.places) {
@@ -37,23 +37,24 @@ LayerChanges with_all_of_pairs(LayerChanges changes) {
 struct ComparedLayer {
   std::string name;
   LayerChanges changes;
-  LayerChanges untested;  // without the test of topology, in the states that have that
+  LayerChanges untested;  // without the topology test, in states that have that
 };
 
-/// A layer, or all parts of one; throws if one cannot be opened.
+/// The layer, or all parts of a layer in parts; throws if one cannot be opened.
 std::vector<const Layer*> layers_of(const ServedLayer& served) {
   if (served.parts == nullptr) return {served.layer.get()};
   std::vector<const Layer*> layers;
   for (const auto& part : served.parts->parts()) {
-    layers.push_back(part->layer().get());  // which the part keeps
+    layers.push_back(part->layer().get());  // kept alive by the part
     if (layers.back() == nullptr) throw std::runtime_error(part->problem());
   }
   return layers;
 }
 
-/// Of parts that correspond to each other, only those are looked at that are not the same; what has
-/// come from another part is taken away there, and is no change of both together. Where the layers
-/// are divided otherwise, everything of each is compared with nothing, which comes to the same.
+/// Compares only those corresponding parts that are not the same. A feature that moved to another
+/// part is removed from one and added to the other, which is no change of both together. If the
+/// layers are divided differently, everything in each is compared with nothing, which gives the
+/// same result.
 LayerChanges changes_of_parts(const ServedLayer& old, const ServedLayer& now, Ids ids) {
   LayerChanges all;
   const auto add = [&](const Layer& before, const Layer& after) {
@@ -120,7 +121,7 @@ class Comparison {
   void add_layer(const std::string& name) {
     const auto before = before_->find(name);
     const auto after = after_->find(name);
-    if (!before || !after) return;  // plan_tile() tells
+    if (!before || !after) return;  // plan_tile() reports it
     const ServedLayer& old = before_->layers()[*before];
     const ServedLayer& now = after_->layers()[*after];
     const StyleQuery& style = request_.tile.style;
@@ -155,8 +156,8 @@ class Comparison {
     return paint.topology == Topology::strict ? &found->changes : &found->untested;
   }
 
-  /// Whether other numbers have come out of a rule for breaks, or other values are joined: then
-  /// features may have other colours that have not changed themselves.
+  /// Whether a rule for class breaks gives other numbers, or other values are joined: then features
+  /// that have not changed themselves may have other colours.
   static bool has_other_classes(const std::string& name, const TilePlan& before,
                                 const TilePlan& after) {
     const auto classing_in = [&name](const TilePlan& plan) -> const Classing* {
@@ -173,7 +174,7 @@ class Comparison {
     return old->breaks != now->breaks || joined(*old) != joined(*now);
   }
 
-  /// All places of the layers of which that is so.
+  /// All places of the layers for which that holds.
   static LayerChanges all_of_reclassed(const TilePlan& before, const TilePlan& after) {
     LayerChanges changes;
     for (const TilePlan* plan : {&before, &after}) {
@@ -185,10 +186,10 @@ class Comparison {
     return changes;
   }
 
-  /// Layers that are seen in one state and not in the other are of other zooms or opacities, which
-  /// is no change of the data.
+  /// Layers visible in only one of the states have other zooms or opacities, which is not a change
+  /// of the data.
   std::vector<TileId> candidates(int zoom, const TilePlan& before, const TilePlan& after) const {
-    std::vector<std::pair<const LayerChanges*, TileDrawing>> drawings;  // mostly alike in both
+    std::vector<std::pair<const LayerChanges*, TileDrawing>> drawings;  // usually the same in both
     const LayerChanges everywhere = all_of_reclassed(before, after);
     std::map<const LayerChanges*, LayerChanges> of_pairs;
     for (const TilePlan* plan : {&before, &after}) {
@@ -220,7 +221,7 @@ class Comparison {
     return tiles;
   }
 
-  /// Those that are different.
+  /// The tiles that differ.
   std::vector<TileId> changed(std::vector<TileId> tiles, const TilePlan& before,
                               const TilePlan& after) {
     if (request_.certainty == Certainty::candidates) return tiles;
@@ -254,7 +255,7 @@ class Comparison {
   const ChangeRequest& request_;
   std::shared_ptr<const Dataset> before_;
   std::shared_ptr<const Dataset> after_;
-  std::vector<TilePainter> painters_;  // one for each thread
+  std::vector<TilePainter> painters_;  // one per thread
   std::vector<ComparedLayer> layers_;
 };
 

@@ -1,4 +1,4 @@
-// Which tiles show something else in one state of the data than in another.
+// Finds the tiles that differ between two states of the data.
 //
 // Thread-safety: any thread; the work is done on all cores.
 #pragma once
@@ -17,11 +17,11 @@
 
 namespace trapeze {
 
-/// How sure it is that a tile that is listed has changed.
+/// How certain it is that a listed tile has changed.
 enum class Certainty : std::uint8_t {
-  candidates,    // it may have, in any style that simplifies as the one that is asked for
-  fingerprints,  // what it is drawn from has
-  bytes,         // its bytes have: it was drawn
+  candidates,    // may have changed, in any style with the simplify of the requested one
+  fingerprints,  // the data it is drawn from has changed
+  bytes,         // its bytes have changed, as found by drawing it
 };
 
 inline constexpr NameTable<Certainty, 3> kCertaintyNames({
@@ -31,23 +31,23 @@ inline constexpr NameTable<Certainty, 3> kCertaintyNames({
 });
 
 struct ChangeRequest {
-  /// Of which the tile is not looked at. Its layers are in both states, and all of them are
+  /// The tile id in it is ignored. Its layers must exist in both states, and all of them are
   /// compared.
   TileRequest tile;
   ZoomRange zooms;
   Certainty certainty = Certainty::fingerprints;
-  /// Of one zoom: from there on none is listed.
+  /// For one zoom: if more tiles changed, none is listed from that zoom on.
   std::size_t most_tiles = 1'000'000;
 };
 
 struct ChangedTiles {
   std::vector<TileId> tiles;  // by zoom, row and column
-  /// The zooms that were looked at: fewer than were asked for where too many tiles have changed.
+  /// The zooms examined: fewer than requested if too many tiles have changed.
   ZoomRange zooms;
-  bool is_complete = true;  // all zooms that were asked for
+  bool is_complete = true;  // covers all requested zooms
 };
 
-/// The tiles of these zooms that differ between the two states: none is left out. The problem is
+/// All tiles of these zooms that differ between the two states; none is missing. The problem is
 /// that of plan_tile().
 Result<ChangedTiles> changed_tiles(const ChangeRequest& request,
                                    const std::shared_ptr<const Dataset>& before,

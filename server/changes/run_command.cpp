@@ -27,8 +27,8 @@ constexpr std::chrono::seconds kGrace{1};
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// A file in memory that holds the text: who does not read it is waited for all the same, and no
-/// folder has to be there that can be written into.
+/// An in-memory file with the text: a command that does not read its input is still waited for, and
+/// no writable folder is needed.
 File file_of(const std::string& text) {
   const int descriptor = memfd_create("changes", MFD_CLOEXEC);
   if (descriptor < 0) throw_error(errno, "a temporary file");
@@ -58,7 +58,8 @@ class Spawning {
   Spawning(const Spawning&) = delete;
   Spawning& operator=(const Spawning&) = delete;
 
-  /// In a group of its own, with no signal blocked, and what it prints among the errors.
+  /// Starts it in its own process group, with no signals blocked, and its output redirected to
+  /// standard error.
   pid_t start(const std::string& command, int input, char* const* environment) {
     posix_spawn_file_actions_adddup2(&actions_, input, STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
@@ -86,7 +87,7 @@ class Spawning {
   posix_spawnattr_t attributes_{};
 };
 
-/// The environment of this process with more variables in it.
+/// The environment of this process with additional variables.
 std::vector<std::string> environment_with(
     const std::vector<std::pair<std::string, std::string>>& variables) {
   std::vector<std::string> all;

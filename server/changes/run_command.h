@@ -1,4 +1,4 @@
-// Runs a command of the operator's.
+// Runs a command configured by the operator.
 #pragma once
 
 #include <functional>
@@ -8,11 +8,11 @@
 
 namespace trapeze {
 
-/// Runs it by /bin/sh with that text as its input and these variables beside those of this process,
-/// and waits for its end; what it prints goes where the log goes. Its exit status, or 128 and the
-/// number of the signal that ended it. As soon as `is_stopping` it is told to end by SIGTERM, with
-/// all that it has started, and killed a second later. Throws std::system_error if it cannot be
-/// started. Any thread.
+/// Runs it with /bin/sh, with that text as its input and these variables in addition to the
+/// environment of this process, and waits for it to finish. Its output goes to standard error, like
+/// the log. Returns its exit status, or 128 plus the number of the signal that ended it. As soon as
+/// `is_stopping` returns true, SIGTERM is sent to the command and all processes it has started, and
+/// SIGKILL a second later. Throws std::system_error if it cannot be started. Any thread.
 int run_command(const std::string& command,
                 const std::vector<std::pair<std::string, std::string>>& variables,
                 const std::string& input, const std::function<bool()>& is_stopping);

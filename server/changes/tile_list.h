@@ -18,9 +18,9 @@ inline constexpr NameTable<TileListFormat, 3> kTileListNames({
     {"text", TileListFormat::text},
 });
 
-/// As text, a line z/x/y for each; as json, one line with an array of these; as geojson, a feature
-/// with the square of each, in degrees, and its zoom, column and row. Ends with a line feed, unless
-/// it is empty text. Any thread.
+/// As text, a line z/x/y for each tile; as json, one line with an array of these; as geojson, a
+/// feature for each with its square, in degrees, and its zoom, column and row. Ends with a line
+/// feed, unless it is empty text. Any thread.
 std::string tile_list(std::span<const TileId> tiles, TileListFormat format);
 
 }  // namespace trapeze

@@ -1,7 +1,7 @@
-// The commands of the program, one function each. They return the exit status: 0 if all is done, 1
-// if something failed or was found wrong. For what main reports they throw UsageError, which ends
-// with 2, or another std::exception, which ends with 1: a file, a port or a renderer that does not
-// work.
+// The commands of the program, one function each. They return the exit status: 0 on success, 1 if
+// something failed or problems were found. Errors that main reports are thrown: as UsageError,
+// which gives status 2, or as another std::exception, which gives status 1, for a file, a port or a
+// renderer that does not work.
 #pragma once
 
 #include <optional>
@@ -19,47 +19,47 @@ namespace trapeze {
 
 struct ServeArguments {
   std::string config;                    // may be empty
-  std::vector<ConfigOverride> settings;  // of the command line; they override all others
-  std::vector<std::string> files;        // instead of the layers of the configuration
-  CoverageArguments coverage;            // of all layers; empty: as they are configured
-  std::optional<SkipLimit> max_skipped;  // of all layers; unset: as they are configured
-  bool is_verbose = false;               // whatever log.level says
+  std::vector<ConfigOverride> settings;  // from the command line; they override all others
+  std::vector<std::string> files;        // replace the layers of the configuration
+  CoverageArguments coverage;            // for all layers; empty: as configured
+  std::optional<SkipLimit> max_skipped;  // for all layers; unset: as configured
+  bool is_verbose = false;               // overrides log.level
 };
-/// What is configured by the file, the environment and the command line. Throws if anything is
-/// wrong with it: UsageError if that is only the command line.
+/// The configuration from the file, the environment and the command line. Throws if anything is
+/// wrong with it: UsageError if only the command line is wrong.
 LoadedConfig load_serve_config(const ServeArguments& arguments);
-/// The same for who draws: there are layers, and none is drawn beyond the last zoom that is
-/// answered. Throws as load_serve_config().
+/// The same for commands that draw: there must be layers, and their zooms are limited to the last
+/// zoom the server answers. Throws as load_serve_config() does.
 Config configure(const ServeArguments& arguments);
 int run_serve(const ServeArguments& arguments);
 
-/// Prints all that is wrong with a configuration and the environment; 1 if a server would not
+/// Prints all problems of a configuration and the environment; returns 1 if a server would not
 /// start.
 int run_config_check(const std::string& path);
-/// Prints what is configured, with the origin of each value.
+/// Prints the configuration, with the origin of each value.
 int run_config_print(const ServeArguments& arguments);
 int run_config_schema();
 
 struct CheckArguments {
   std::vector<std::string> files;
   CoverageArguments coverage;
-  SkipLimit max_skipped;  // of each file
-  std::string list;       // a file for the gaps and overlaps of the one of `files`; may be empty
+  SkipLimit max_skipped;  // for each file
+  std::string list;       // a file for gaps and overlaps of the single input file; may be empty
   bool overwrite = false;
 };
 int run_check(const CheckArguments& arguments);
 
 struct PrepareArguments {
   std::vector<std::string> files;
-  std::string output;  // a folder, made if it is not there; of an overview, perhaps its file
-  std::string reuse;   // a prepared file, or a folder of them; empty: nothing is taken over
+  std::string output;  // a folder, created if missing; for an overview, optionally its file
+  std::string reuse;   // a prepared file, or a folder of them; empty: nothing is reused
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
-  SourceSelection selection;      // of each file
-  SkipLimit max_skipped;          // of each file, or each part of one
+  SourceSelection selection;      // from each file
+  SkipLimit max_skipped;          // for each file, or each part of one
   std::string part;               // I/N, or A-B/N; empty: files are not divided
-  std::vector<std::string> join;  // parts, of which an overview is made, and nothing else is done
-  std::vector<std::string> crs;   // systems to prepare for besides Web Mercator
+  std::vector<std::string> join;  // parts to create an overview of, without doing anything else
+  std::vector<std::string> crs;   // reference systems to prepare for in addition to Web Mercator
 };
 int run_prepare(const PrepareArguments& arguments);
 
@@ -78,9 +78,9 @@ int run_diff(const DiffArguments& arguments);
 struct ExportArguments {
   std::string file;
   int zoom = 0;
-  double simplify = kTolerancePixels;  // pixels, as tiles are drawn
+  double simplify = kTolerancePixels;  // pixels, as for tiles
   double smooth = 0;                   // pixels
-  double grow = 0;                     // pixels; not beside smooth
+  double grow = 0;                     // pixels; not together with smooth
   std::string topology{kTopologyNames.name_of(Topology::strict)};
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
@@ -103,7 +103,7 @@ struct RenderArguments {
 int run_render(const RenderArguments& arguments);
 
 struct SeedArguments {
-  ServeArguments serve;             // layers, and what draws them
+  ServeArguments serve;             // layers and renderers
   std::vector<std::string> layers;  // bottom first; empty: all
   std::string style;                // a query string
   std::string zooms;
@@ -115,9 +115,9 @@ struct SeedArguments {
   bool is_dry_run = false;
   std::string part;               // I/N; empty: all
   std::string update;             // an archive; may be empty
-  std::vector<std::string> join;  // parts, of which an archive is made, and nothing else is done
-  std::string jobs;  // a name of kBatchSystemNames: they are printed, and nothing else is done
-  int parts = 0;     // of these jobs; 0: not said
+  std::vector<std::string> join;  // parts to join into an archive, without doing anything else
+  std::string jobs;  // a name of kBatchSystemNames: jobs are printed, and nothing else is done
+  int parts = 0;     // number of these jobs; 0: not given
   std::vector<std::string> words;  // of the command line, after "seed"
 };
 int run_seed(const SeedArguments& arguments);
@@ -126,7 +126,7 @@ struct BenchArguments {
   std::string name;
   std::vector<std::string> options;  // for the benchmark
 };
-/// Replaces the process by the program trapeze-NAME, as benchmarks need libraries that a server
+/// Replaces the process by the program trapeze-NAME, since benchmarks need libraries that a server
 /// does not. Does not return.
 int run_bench(const BenchArguments& arguments);
 

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPrefix = "trapeze-";
 
-/// Where programs of benchmarks are: beside this one where it was built, or where it is installed.
+/// The folders of benchmark programs: next to this program in the build folder, or where it is
+/// installed.
 std::vector<fs::path> folders() {
   const fs::path here = fs::read_symlink("/proc/self/exe").parent_path();
   return {here / "bench", here};

@@ -15,7 +15,7 @@
 namespace trapeze {
 namespace {
 
-/// Versions of trapezoids over all tolerances, and the dust that small polygons leave.
+/// Prints the versions of trapezoids over all tolerances, and the dust of small polygons.
 void print_history(const LayerSize& size, const LoadReport& report) {
   const double vertices = static_cast<double>(std::max<std::size_t>(report.vertices, 1));
   fmt::print("  trapezoids            {} versions, {:.2f} per vertex\n", size.trapezoids,
@@ -32,7 +32,7 @@ void print_memory(const Layer& layer, const LoadReport& report) {
   fmt::print("  memory of attributes  {} bytes\n", layer.features().memory());
 }
 
-/// Polygons that share borders, if there are any.
+/// Prints the polygons that share borders, if there are any.
 void print_coverage(const CoverageCounts& counts) {
   if (counts.groups == 0 && counts.apart == 0) return;
   fmt::print("  coverages             {} groups with {} features\n", counts.groups,
@@ -52,7 +52,7 @@ void print_notes(const std::vector<FeatureNote>& notes) {
   }
 }
 
-/// Of a layer in parts, which are looked at one after the other.
+/// Prints a layer in parts, which are read one after the other.
 void print_parts(const PreparedParts& parts) {
   fmt::print("  parts                 {}, {}\n", parts.parts().size(),
              parts.overview() == nullptr ? "without an overview"
@@ -104,7 +104,7 @@ void print_report(const LoadedLayer& loaded) {
   print_notes(report.notes);
 }
 
-/// False if the file cannot be read, or too much of it is skipped.
+/// False if the file cannot be read, or too many features are skipped.
 bool check_file(const std::string& file, const OpenOptions& how, SkipLimit max_skipped) {
   LoadedLayer loaded;
   try {
@@ -114,7 +114,7 @@ bool check_file(const std::string& file, const OpenOptions& how, SkipLimit max_s
     options.progress = [&progress](double share) { progress.show(share); };
     loaded = open_layer(file, options);
   } catch (const std::exception& error) {
-    // Reported here and not by main, so that the files after this one are checked too.
+    // Reported here and not by main, so that the following files are checked, too.
     fmt::print(stderr, "trapeze: {}\n", failure_words(error, file));
     return false;
   }
@@ -128,7 +128,7 @@ bool check_file(const std::string& file, const OpenOptions& how, SkipLimit max_s
   return excess.empty();
 }
 
-/// False if it cannot be written, or is not complete.
+/// False if the list cannot be written, or is not complete.
 bool list_faults_of(const std::string& file, const CheckArguments& arguments) {
   FaultReport report;
   try {

@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-// Layers of both states have this name, whatever their files are called.
+// The layer's name in both states, whatever the files are called.
 constexpr const char* kLayer = "layer";
 
 std::shared_ptr<const Dataset> load(const std::string& file, const DiffArguments& arguments,

@@ -18,7 +18,7 @@ double cells_per_pixel(int zoom) {
   return static_cast<double>(TileId{zoom, 0, 0}.side()) / kPixelsPerTile;
 }
 
-/// The tolerance of a tile at this zoom: a level of the ladder, as the server draws it.
+/// The tolerance of a tile at this zoom: a level of the ladder, as in the server.
 double epsilon_of(int zoom, double pixels) {
   return epsilon_of_level(nearest_level(pixels * cells_per_pixel(zoom)));
 }

@@ -31,7 +31,7 @@ namespace {
 
 constexpr const char* kExtension = ".trapeze";
 
-/// Which parts of how many are prepared.
+/// The range of parts to prepare, and the number of all parts.
 struct PartRange {
   std::uint32_t first = 1;
   std::uint32_t last = 1;
@@ -40,7 +40,7 @@ struct PartRange {
   bool is_all() const { return first == 1 && last == count; }
 };
 
-/// "I/N" or "A-B/N".
+/// Parses "I/N" or "A-B/N".
 PartRange parts_or_throw(const std::string& text) {
   const auto wrong = [&text] {
     return UsageError(fmt::format(
@@ -61,7 +61,7 @@ PartRange parts_or_throw(const std::string& text) {
           static_cast<std::uint32_t>(first->count)};
 }
 
-/// "buildings-03-of-12.trapeze".
+/// For example "buildings-03-of-12.trapeze".
 std::string name_of_part(const std::string& layer, std::uint32_t part, std::uint32_t count) {
   const std::string of = std::to_string(count);
   return fmt::format("{}-{:0{}}-of-{}{}", layer, part, of.size(), of, kExtension);
@@ -78,13 +78,14 @@ void make_folder(const std::string& folder) {
       fmt::format("the folder {} cannot be made: {}", folder, error.message()));
 }
 
-/// The file to take over from: `reuse` itself, or the one for that output in the folder.
+/// The file to reuse: `reuse` itself, or the file for that output in the folder.
 std::string earlier_file(const std::string& reuse, const std::string& output) {
   if (reuse.empty() || !std::filesystem::is_directory(reuse)) return reuse;
   return (std::filesystem::path(reuse) / std::filesystem::path(output).filename()).string();
 }
 
-/// Nothing, and why, if there is nothing to take over from the file; it may be missing in a folder.
+/// Returns nothing, with the reason, if the file has nothing to reuse; in a folder, it may be
+/// missing.
 EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
                              const LayerOptions& options, const std::string& grid) {
   if (file.empty()) return {};
@@ -116,7 +117,7 @@ void print_reuse(const EarlierPrepared& earlier, const LoadReport& report) {
              report.loaded, earlier.path);
 }
 
-/// Before the file is read, so that a change from here on is noticed now or later.
+/// Taken before the file is read, so that a change from here on is noticed now or later.
 SourceStamp stamp_or_throw(const std::string& file) {
   if (is_prepared_file(file)) {
     throw std::runtime_error(file + ": already a prepared file; name its source instead");
@@ -180,7 +181,7 @@ std::shared_ptr<const SourceDivision> divide(const std::string& file, const Load
   return division;
 }
 
-/// The overview of these parts, in that file.
+/// Writes the overview of these parts to that file.
 void join(const std::vector<std::string>& files, const std::string& output) {
   const auto parts = find_prepared_parts(files, {});
   LoadedLayer overview;
@@ -195,7 +196,7 @@ void join(const std::vector<std::string>& files, const std::string& output) {
              static_cast<double>(std::filesystem::file_size(output)) / 1e6);
 }
 
-/// Some of the parts of a file, with an overview if they are all of them.
+/// Prepares some of the parts of a file, and an overview if they are all of them.
 void prepare_parts(const LayerConfig& layer, const LoadOptions& how, const PartRange& range,
                    const PrepareArguments& arguments) {
   const SourceStamp source = stamp_or_throw(layer.file);
@@ -229,7 +230,7 @@ int run_join(const PrepareArguments& arguments) {
   return 0;
 }
 
-/// That of Web Mercator, which has no name, and those of the systems.
+/// The grid of Web Mercator, which has no name, and those of the reference systems.
 std::vector<std::string> grids_or_throw(const std::vector<std::string>& names) {
   std::vector<std::string> grids = {""};
   for (const std::string& name : names) {
@@ -275,7 +276,7 @@ int run_prepare(const PrepareArguments& arguments) {
                   arguments.reuse);
         }
       } catch (const std::exception& error) {
-        // Reported here and not by main, so that the files after this one are prepared too.
+        // Reported here and not by main, so that the following files are prepared, too.
         fmt::print(stderr, "trapeze: {}\n", failure_words(error, layer.file));
         is_all_prepared = false;
       }

@@ -40,7 +40,7 @@ TileId tile_or_throw(const std::string& text) {
                   kMaxZoom, text));
 }
 
-/// What the end of a file's name says, whatever its case.
+/// Determined by the file name extension, ignoring case.
 TileFormat format_of(const std::string& path) {
   const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
   if (extension == ".png") return TileFormat::png;

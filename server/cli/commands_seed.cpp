@@ -60,7 +60,8 @@ std::string bytes_words(double bytes) {
   return fmt::format("{:.1f} TB", bytes / kThousand);
 }
 
-/// Of those that would be drawn, `reused` have been taken over; there may be some if `is_update`.
+/// Of the tiles that would be drawn, `reused` were taken from the earlier archive; there can only
+/// be some if `is_update`.
 std::string figures_words(const SeedFigures& figures, bool is_update = false,
                           std::uint64_t reused = 0) {
   return fmt::format("{} tiles: {} drawn,{} {} of one colour when looked at, {} known without",
@@ -69,7 +70,7 @@ std::string figures_words(const SeedFigures& figures, bool is_update = false,
                      number_words(figures.alone), number_words(figures.known));
 }
 
-/// Tells every few seconds how far the work is.
+/// Reports progress every few seconds.
 class ProgressLine {
  public:
   ProgressLine(double cost, double done_before) : cost_(cost), done_before_(done_before) {}
@@ -144,7 +145,7 @@ SeedRequest make_request(const SeedArguments& arguments, const Config& config) {
   return request;
 }
 
-/// As far as they are seeded.
+/// Limited to the area to be seeded.
 GeographicBounds bounds_of(const LayerSummary& summary, const SeedRequest& request) {
   if (!request.bbox) return summary.bounds();
   const auto [west, south, east, north] = summary.bounds();
@@ -185,7 +186,7 @@ SeedPart part_of(const SeedArguments& arguments) {
   return *part;
 }
 
-/// What a seeding is: the words are those of the same command.
+/// Everything needed for a seeding. The words are those of the same command.
 struct Work {
   SeedRequest request;
   std::shared_ptr<const Dataset> dataset;
@@ -236,7 +237,7 @@ int tell_estimate(const Work& work, Seeder& seeder) {
   return 0;
 }
 
-/// Where what is under way is kept.
+/// The file for work in progress.
 std::string log_path(const SeedArguments& arguments) {
   if (!arguments.part.empty()) return arguments.output;
   std::string path = arguments.output;
@@ -278,8 +279,8 @@ void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder)
                static_cast<double>(last.figures.drawn - last.reused) / std::max(seconds, 1e-3));
 }
 
-/// Layers and styles are those of the machines that will seed: only what is known without them is
-/// looked at.
+/// Layers and styles are checked on the machines that will seed: here, only arguments that can be
+/// checked without them are.
 int print_jobs(const SeedArguments& arguments) {
   const BatchSystem system = word_or_throw("--jobs", arguments.jobs, kBatchSystemNames);
   if (arguments.parts == 0) throw UsageError("--jobs needs --parts, the number of parts");

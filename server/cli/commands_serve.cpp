@@ -22,7 +22,7 @@
 namespace trapeze {
 namespace {
 
-/// Layers are not drawn, nor announced, beyond the last zoom that is answered.
+/// Layers are neither drawn nor announced beyond the last zoom that the server answers.
 void limit_zooms(Config& config) {
   for (LayerConfig& layer : config.layers) {
     layer.max_zoom = std::max(layer.min_zoom, std::min(layer.max_zoom, config.limits.zoom));
@@ -40,7 +40,7 @@ void throw_if_any(const std::vector<ConfigProblem>& problems) {
   throw std::runtime_error(text);
 }
 
-/// Instead of the layers of the configuration.
+/// Replaces the layers of the configuration.
 void take_files(const std::vector<std::string>& files, LoadedConfig& loaded) {
   loaded.config.layers = layers_or_throw(files);
   for (const LayerConfig& layer : loaded.config.layers) {
@@ -50,7 +50,7 @@ void take_files(const std::vector<std::string>& files, LoadedConfig& loaded) {
   }
 }
 
-/// Of all layers.
+/// Applies to all layers.
 void limit_skipped(SkipLimit limit, LoadedConfig& loaded) {
   for (LayerConfig& layer : loaded.config.layers) {
     layer.max_skipped = limit;
@@ -58,7 +58,7 @@ void limit_skipped(SkipLimit limit, LoadedConfig& loaded) {
   }
 }
 
-/// Of all layers.
+/// Applies to all layers.
 void share_borders(const CoverageArguments& coverage, LoadedConfig& loaded) {
   for (LayerConfig& layer : loaded.config.layers) {
     apply(coverage, layer);
@@ -72,13 +72,14 @@ void share_borders(const CoverageArguments& coverage, LoadedConfig& loaded) {
   }
 }
 
-/// Finds out before the socket is open what would only fail after the other files were loaded.
+/// Finds missing files before the socket is opened, instead of after the other files have been
+/// loaded.
 void check_files_exist(const std::vector<LayerConfig>& layers) {
   for (const LayerConfig& layer : layers) {
     const std::string& file = layer.file_to_open();
     std::error_code error;
     if (is_pattern_of_files(file)) {
-      files_of_pattern(file);  // throws if there is none
+      files_of_pattern(file);  // throws if there are none
     } else if (is_file_path(file) && !std::filesystem::exists(file, error)) {
       throw std::runtime_error(fmt::format("layer \"{}\": there is no file {}", layer.name, file));
     }
@@ -112,9 +113,9 @@ LayerSource layer_source(const ServeArguments& arguments, const Config& running)
 }
 
 [[noreturn]] void end_now(ServerLog& log) {
-  // Neither reading a large file nor waiting for a database can be interrupted, and what comes of
-  // it is not needed any more. The thread that reads must not meet objects that are being
-  // destroyed: so none are.
+  // Neither reading a large file nor waiting for a database can be interrupted, and the result is
+  // not needed any more. Objects must not be destroyed while the reading thread uses them, so none
+  // are destroyed.
   spdlog::info("stopped while loading");
   log.flush();
   std::quick_exit(0);
@@ -146,7 +147,7 @@ Config configure(const ServeArguments& arguments) {
 }
 
 int run_serve(const ServeArguments& arguments) {
-  // The server goes on when whoever reads its log goes away.
+  // The server continues when the reader of its log exits.
   std::signal(SIGPIPE, SIG_IGN);
   ServerLog log;
   const Config config = configure(arguments);

@@ -1,4 +1,4 @@
-// The command line: reads it, calls the command, reports what went wrong.
+// The command line: parses it, runs the command, reports errors.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -166,8 +166,7 @@ Examples:
 Benchmarks are separate programs, trapeze-NAME in the folder bench beside this program, since
 they need additional libraries. The release preset builds them.)";
 
-/// What the setting is for, what it takes where that is one of a few words, and what it is if it is
-/// not set.
+/// The purpose of the setting, the words it accepts if there are only a few, and its default.
 std::string help_of(const std::string& name) {
   const auto& settings = trapeze::config_settings();
   const auto setting =
@@ -197,7 +196,7 @@ trapeze::ConfigOverride parse_assignment(const std::string& text) {
   return {name, text.substr(equals + 1), "--set " + name};
 }
 
-/// An option that is a setting of the configuration, which is text or an integer.
+/// An option for a setting of the configuration, either text or an integer.
 void add_setting(CLI::App& command, trapeze::ServeArguments& arguments, const std::string& option,
                  const std::string& setting, const char* type) {
   command
@@ -210,7 +209,7 @@ void add_setting(CLI::App& command, trapeze::ServeArguments& arguments, const st
       ->type_name(type);
 }
 
-/// An option that takes a number; `set` gets its name and its value as text.
+/// A numeric option; `set` receives its name and its value as text.
 CLI::Option& add_number(CLI::App& command, const std::string& option, const char* type,
                         const std::string& help,
                         const std::function<void(const std::string&, const std::string&)>& set) {
@@ -220,7 +219,7 @@ CLI::Option& add_number(CLI::App& command, const std::string& option, const char
               ->type_name(type);
 }
 
-/// `limit` is left as it is if neither option is given: which is `if_not_set`, in words.
+/// `limit` is left unchanged if neither option is given; `if_not_set` describes that case.
 template <typename Limit>
 void add_max_skipped(CLI::App& command, Limit& limit, const char* if_not_set) {
   add_number(
@@ -267,12 +266,12 @@ std::string usual_coverage() {
   return std::string(trapeze::kCoverageNames.name_of(trapeze::kUsualCoverage));
 }
 
-/// Where files are read that may have been prepared.
+/// For commands that read files which may have been prepared.
 std::string coverage_of_files() {
   return "the mode a file was prepared with, else " + usual_coverage();
 }
 
-/// Of whoever draws: which layers, and on what.
+/// For commands that draw: the layers, and the renderer.
 void add_drawing_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Polygon files in a format that GDAL reads, or prepared files; each becomes a "
@@ -564,13 +563,13 @@ void add_seed(CLI::App& app, trapeze::SeedArguments& arguments) {
              });
 }
 
-/// What follows the name of a benchmark is for the benchmark, --help included.
+/// Everything after the name of a benchmark is passed to the benchmark, including --help.
 std::optional<trapeze::BenchArguments> bench_arguments(int argc, char** argv) {
   if (argc < 3 || std::string_view(argv[1]) != "bench" || argv[2][0] == '-') return std::nullopt;
   return trapeze::BenchArguments{argv[2], {argv + 3, argv + argc}};
 }
 
-/// For its help, and to report that the name is missing.
+/// For its help, and to report a missing name.
 void add_bench(CLI::App& app, std::string& name) {
   CLI::App* bench =
       app.add_subcommand("bench", "Run a benchmark: trapeze bench NAME [OPTION OF NAME ...]");
@@ -613,7 +612,7 @@ std::string command_path(const CLI::App& command) {
   return above.empty() ? command.get_name() : above + ' ' + command.get_name();
 }
 
-/// What is left over when all that is known was read.
+/// The problem with an argument that is left over after all known ones were parsed.
 std::string unknown_problem(const CLI::App& app, const CLI::App& command,
                             const std::string& argument) {
   const std::string name = argument.substr(0, argument.find('='));
@@ -625,8 +624,8 @@ std::string unknown_problem(const CLI::App& app, const CLI::App& command,
   return "there is no command " + argument + trapeze::did_you_mean(argument, commands);
 }
 
-/// What is wrong with how the options that are known were given. The parser tells only in words of
-/// its own which option it is about; those words begin with or contain its name.
+/// The problem with known options. The parser reports the option only in its message, which begins
+/// with or contains the option's name.
 std::string option_problem(const CLI::App& app, const CLI::App& command,
                            const CLI::ParseError& error) {
   std::string words = error.what();
@@ -647,10 +646,10 @@ std::string option_problem(const CLI::App& app, const CLI::App& command,
   return words;
 }
 
-/// Says what is wrong, what may have been meant, and where there is more to read.
+/// Reports what is wrong, what may have been meant, and where there is more to read.
 std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = innermost(app);
-  // What is mistyped comes first: that a required option is missing may follow from it.
+  // Mistyped arguments come first: a missing required option may be a consequence.
   const std::vector<std::string> unknown = app.remaining(true);
   const std::string problem = unknown.empty() ? option_problem(app, command, error)
                                               : unknown_problem(app, command, unknown.front());
@@ -662,7 +661,7 @@ std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
 int run(int argc, char** argv) {
   if (const auto benchmark = bench_arguments(argc, argv)) return trapeze::run_bench(*benchmark);
   CLI::App app(kDescription, "trapeze");
-  app.require_subcommand(0, 1);  // none is reported below, with what there is
+  app.require_subcommand(0, 1);  // a missing command is reported below, with the list of commands
   app.set_version_flag("--version", "trapeze " + trapeze::version());
   bool is_verbose = false;
   app.add_flag("--verbose", is_verbose, "Log every request");
@@ -722,8 +721,8 @@ int run(int argc, char** argv) {
   return trapeze::run_render(render);
 }
 
-/// That of a command, or of a failure if not all of its results could be written, as to a disk that
-/// is full.
+/// The status of the command, or of a failure if not all of its results could be written, for
+/// example to a full disk.
 int status_with_results(int status) {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;

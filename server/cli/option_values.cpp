@@ -17,7 +17,7 @@
 namespace trapeze {
 namespace {
 
-/// Nothing if the text is no number, or holds more than one. Infinity and NaN are none.
+/// Nothing if the text is not exactly one number. Infinity and NaN are not accepted.
 template <typename Number>
 std::optional<Number> number_in(const std::string& text, Number min, Number max) {
   Number number{};
@@ -36,7 +36,7 @@ bool is_target_grid(const std::string& name) {
   }
 }
 
-/// "land.trapeze" of "land.EPSG-2056.trapeze".
+/// "land.trapeze" for "land.EPSG-2056.trapeze".
 std::string without_grid(const std::string& file) {
   const std::filesystem::path path(file);
   return (path.parent_path() / path.stem().stem()).string() + path.extension().string();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kCommentColumn = 40;
 
-/// A basic string of TOML. What ${NAME} would be read as is written so that it is not.
+/// A basic string of TOML, escaped so that ${NAME} in it is not expanded when it is read.
 std::string toml_string(std::string_view text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -49,7 +49,7 @@ std::string line(const std::string& key, const std::string& value, const LoadedC
   return fmt::format("{:<{}} # {}\n", assignment, kCommentColumn, loaded.origin_of(setting));
 }
 
-/// The settings of a style as keys and values; what is for one layer has a dotted key.
+/// The settings of a style as keys and values; settings for single layers have dotted keys.
 std::vector<std::string> style_assignments(const StyleQuery& style) {
   std::vector<std::string> assignments;
   for (const auto& [name, value] : style.pairs()) {
@@ -86,7 +86,7 @@ std::string print_fonts(const std::string& name, const FontsConfig& fonts,
   return text;
 }
 
-/// Connection strings may hold one.
+/// Removes the password that a connection string may contain.
 SettingValue without_password(const Setting<LayerConfig>& setting, const SettingValue& value) {
   if (setting.type != SettingType::path) return value;
   return name_of_source(std::get<std::string>(value));
@@ -151,7 +151,7 @@ Json closed_object() {
   return {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
 }
 
-/// Style parameters, in whose names '_' may stand for '-'.
+/// Style parameters, in whose names '_' may replace '-'.
 Json style_schema(bool is_for_all_layers) {
   Json schema = closed_object();
   for (const StyleParameter& parameter : style_parameters()) {
@@ -167,7 +167,7 @@ Json style_schema(bool is_for_all_layers) {
   return schema;
 }
 
-/// By name; with tables for single layers.
+/// Styles by name, with tables for single layers.
 Json styles_schema() {
   Json style = style_schema(true);
   style["additionalProperties"] = style_schema(false);

@@ -30,8 +30,8 @@ namespace {
 
 constexpr int kMaxMilliseconds = 600'000;
 
-// In all makers below, `place` answers with a reference to the value within the owner, const if the
-// owner is.
+// In all functions below that make settings, `place` returns a reference to the value in its owner;
+// it is const if the owner is.
 
 template <typename Owner>
 // NOLINTNEXTLINE(performance-unnecessary-value-param): both are moved from
@@ -64,7 +64,7 @@ Setting<Owner> integer(std::string_view name, Place place, std::int64_t min, std
   return setting;
 }
 
-/// A value that is kept as it is written.
+/// A value that is stored as it is written.
 template <typename Value, typename Owner, typename Place>
 Setting<Owner> plain(Setting<Owner> setting, Place place) {
   setting.get = [place](const Owner& owner) -> SettingValue { return place(owner); };
@@ -103,7 +103,7 @@ Setting<Owner> path(std::string_view name, Place place, std::string help) {
                             place);
 }
 
-/// Text that becomes something else: `parse` answers with nothing for what it does not take.
+/// Text that is converted: `parse` returns nothing for invalid text.
 template <typename Owner, typename Place, typename Parse, typename ToText>
 Setting<Owner> parsed(std::string_view name, Place place, std::string takes, Parse parse,
                       ToText to_words, std::string help) {
@@ -150,7 +150,7 @@ Setting<Owner> choice(std::string_view name, Place place, const Words<Value>& wo
   return setting;
 }
 
-/// A list of strings, each of which `parse` takes.
+/// A list of strings, each of which `parse` accepts.
 template <typename Owner, typename Place, typename Parse, typename ToText>
 Setting<Owner> list(std::string_view name, Place place, std::string takes, Parse parse,
                     ToText to_words, std::string help) {
@@ -212,7 +212,7 @@ std::string range_text(const AddressRange& range) {
   return fmt::format("{}/{}", address_text(range.first), is_ipv4 ? range.bits - 96 : range.bits);
 }
 
-/// The names that they have everywhere.
+/// The names used for the values everywhere.
 template <typename Value, typename Names>
 Words<Value> words_of(const Names& names) {
   Words<Value> words;
@@ -247,7 +247,7 @@ const Words<std::optional<CoverageMode>>& coverage_words() {
   return words;
 }
 
-/// Not set is none of the words.
+/// There is no word for "not set".
 Setting<LayerConfig> weights_setting() {
   auto setting = choice<std::optional<WeightRule>, LayerConfig>(
       "weights", [](auto& layer) -> auto& { return layer.weights; }, weight_words(),
@@ -260,7 +260,7 @@ Setting<LayerConfig> weights_setting() {
   return setting;
 }
 
-/// Not set is none of the words.
+/// There is no word for "not set".
 Setting<LayerConfig> coverage_setting() {
   auto setting = choice<std::optional<CoverageMode>, LayerConfig>(
       "coverage", [](auto& layer) -> auto& { return layer.coverage; }, coverage_words(),
@@ -275,7 +275,7 @@ Setting<LayerConfig> coverage_setting() {
   return setting;
 }
 
-/// Not set is no number.
+/// There is no number for "not set".
 Setting<LayerConfig> close_gaps_setting() {
   auto setting = begin<LayerConfig>(
       "close_gaps", SettingType::number, fmt::format("a number from 0 to {}", kWidestGap),
@@ -294,7 +294,7 @@ Setting<LayerConfig> close_gaps_setting() {
   return setting;
 }
 
-/// Not set is no number.
+/// There is no number for "not set".
 Setting<LayerConfig> merge_setting() {
   auto setting = begin<LayerConfig>(
       "merge", SettingType::number, fmt::format("a number from 0 to {}", kWidestMerge),
@@ -315,7 +315,7 @@ Setting<LayerConfig> merge_setting() {
   return setting;
 }
 
-/// Not set is no list.
+/// There is no list for "not set".
 Setting<LayerConfig> attributes_setting() {
   auto setting =
       begin<LayerConfig>("attributes", SettingType::list, "a list of names of attributes",
@@ -342,7 +342,7 @@ Setting<LayerConfig> max_skipped_setting() {
   return setting;
 }
 
-/// Not set is no number.
+/// There is no number for "not set".
 Setting<LayerConfig> detail_zoom_setting() {
   auto setting = begin<LayerConfig>("detail_zoom", SettingType::integer,
                                     fmt::format("an integer from 0 to {}", kMaxZoom),

@@ -15,7 +15,7 @@ bool is_variable_name(std::string_view name) {
   });
 }
 
-/// What stands between the braces, looked up.
+/// Expands the text between the braces.
 ExpandedText look_up(std::string_view inside, const FindVariable& find) {
   const std::size_t mark = inside.find(kDefaultMark);
   const std::string name(inside.substr(0, mark));
@@ -52,7 +52,7 @@ ExpandedText expand_variables(std::string_view text, const FindVariable& find) {
       expanded.text += value.text;
       text.remove_prefix(close + 1);
     } else if (!text.empty()) {
-      expanded.text += '$';  // alone it means itself
+      expanded.text += '$';  // a single $ represents itself
       text.remove_prefix(1);
     }
   }

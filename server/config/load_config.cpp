@@ -39,7 +39,7 @@ std::string relative_to_config(const std::string& config_path, const std::string
   return (std::filesystem::path(config_path).parent_path() / path).lexically_normal().string();
 }
 
-/// Whether the value, which has the right type, is one that the setting takes; if so it is set.
+/// Sets the value, which has the right type, if the setting accepts it; returns whether it does.
 template <typename Owner>
 bool assign(const Setting<Owner>& setting, Owner& owner, const SettingValue& value) {
   const auto is_within = [&setting](double number) {
@@ -52,7 +52,7 @@ bool assign(const Setting<Owner>& setting, Owner& owner, const SettingValue& val
   return setting.set(owner, value);
 }
 
-/// Turns tables of TOML into settings, and goes on after what is wrong.
+/// Turns TOML tables into settings, and continues after errors.
 class ConfigReader {
  public:
   ConfigReader(const std::string& path, LoadedConfig& loaded) : path_(path), loaded_(loaded) {}
@@ -104,7 +104,7 @@ class ConfigReader {
     read_settings(*table, here, loaded_.config, std::string(name));
   }
 
-  /// `other_key` is read by somebody else.
+  /// `other_key` is read elsewhere.
   template <typename Owner>
   void read_settings(const toml::table& table, const std::vector<Setting<Owner>>& settings,
                      Owner& owner, const std::string& name, std::string_view other_key = {}) {
@@ -143,14 +143,14 @@ class ConfigReader {
   bool read_setting(const Setting<Owner>& setting, const toml::node& node, Owner& owner) {
     const std::size_t before = loaded_.problems.size();
     const auto value = value_of(setting.type, node);
-    if (loaded_.problems.size() > before) return false;  // a variable that is not set
+    if (loaded_.problems.size() > before) return false;  // a variable is not set
     if (value && assign(setting, owner, with_path(setting, *value))) return true;
     const toml::node* item = value ? refused_item(setting, node, owner) : nullptr;
     fail(item == nullptr ? node : *item, fmt::format("{} takes {}", setting.name(), setting.takes));
     return false;
   }
 
-  /// The first item of a list that is not taken; null if it is no list.
+  /// The first invalid item of a list; null if it is not a list.
   template <typename Owner>
   const toml::node* refused_item(const Setting<Owner>& setting, const toml::node& node,
                                  Owner owner) {
@@ -313,7 +313,7 @@ class ConfigReader {
     loaded_.config.layers.push_back(std::move(layer));
   }
 
-  /// As the value is written in a query; nothing for what has no place there.
+  /// The value as written in a query; nothing if a query cannot contain it.
   std::optional<std::string> query_text_of(const toml::node& node) {
     if (node.is_string()) return expanded(node);
     if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
@@ -330,8 +330,8 @@ class ConfigReader {
     return joined;
   }
 
-  /// Style parameters by their names, in which '_' may stand for '-', as pairs of a query. Tables
-  /// are for one layer each, if they are allowed.
+  /// Reads style parameters, in whose names '_' may replace '-', as query pairs. Tables, if they
+  /// are allowed, contain the parameters of one layer each.
   void read_style_pairs(const toml::table& table, const std::string& layer, bool has_layers,
                         std::vector<QueryPair>& pairs) {
     for (const auto& [key, node] : table) {
@@ -387,7 +387,7 @@ class ConfigReader {
     return style_or_problem(node, pairs, {});
   }
 
-  /// Of pairs that are right one by one.
+  /// Combines pairs that have been checked individually.
   StyleQuery style_or_problem(const toml::node& node, const std::vector<QueryPair>& pairs,
                               const Names& layers) {
     auto style = StyleQuery::parse(pairs, layers);
@@ -467,14 +467,14 @@ class ConfigReader {
   std::unordered_map<std::string, toml::source_index> lines_;  // of layers, by name
 };
 
-/// `parse` gives the table of what is called `path`.
+/// `parse` returns the table of the file at `path`.
 template <typename Parse>
 void read_toml(const std::string& path, Parse parse, LoadedConfig& loaded) {
   try {
     const toml::table root = parse();
     ConfigReader(path, loaded).read(root);
   } catch (const toml::parse_error& error) {
-    // Position 0:0 means that the file could not be opened, not that its text is wrong.
+    // Position 0:0 means that the file could not be opened; its text is not at fault.
     const auto position = error.source().begin;
     const std::string what(error.description());
     loaded.problems.push_back(position.line == 0
@@ -501,7 +501,7 @@ std::vector<std::string> words_in(std::string_view text) {
   return words;
 }
 
-/// The value that a text means for a setting of that type; nothing if it means none.
+/// The value that a text represents for a setting of that type; nothing if it is invalid.
 std::optional<SettingValue> value_in(SettingType type, const std::string& text) {
   switch (type) {
     case SettingType::boolean:
@@ -530,8 +530,8 @@ std::string variable_of(const Setting<Config>& setting) {
   return name;
 }
 
-/// What Kubernetes sets in every container for a service called trapeze-server, -admin or the like:
-/// TRAPEZE_SERVER_SERVICE_HOST, TRAPEZE_SERVER_PORT_8080_TCP.
+/// Whether Kubernetes sets the variable in every container for a service with a name like
+/// trapeze-server or trapeze-admin: TRAPEZE_SERVER_SERVICE_HOST, TRAPEZE_SERVER_PORT_8080_TCP.
 bool is_service_link(std::string_view variable) {
   constexpr std::string_view kPort = "_PORT_";
   const std::size_t port = variable.find(kPort);
@@ -542,7 +542,7 @@ bool is_service_link(std::string_view variable) {
          (!number.empty() && number.front() >= '0' && number.front() <= '9');
 }
 
-/// Whether it begins as variables of settings do: TRAPEZE_SERVER_PROT, but not TRAPEZE_DATA.
+/// Whether it begins like variables of settings: TRAPEZE_SERVER_PROT does, TRAPEZE_DATA does not.
 bool is_of_a_table(std::string_view variable) {
   return std::ranges::any_of(config_settings(), [variable](const Setting<Config>& setting) {
     const std::string of_setting = variable_of(setting);
@@ -577,12 +577,12 @@ void apply(const ConfigOverride& change, LoadedConfig& loaded) {
                    is_list ? "" : did_you_mean(change.value, setting.choices))});
 }
 
-/// What the file is called: what people read.
+/// The title of a layer for people, from the name of its file.
 std::string layer_title_of_file(const std::string& file) {
   std::filesystem::path path(file);
-  if (!path.has_filename()) path = path.parent_path();  // a folder written with a '/' at the end
+  if (!path.has_filename()) path = path.parent_path();  // a folder written with a trailing '/'
   std::string name = path.stem().string();
-  // Of a pattern, what comes before it, or else the folder.
+  // For a pattern, the text before the wildcard, or else the folder.
   if (const std::size_t wild = name.find_first_of("*?"); wild != std::string::npos) {
     name = name.substr(0, wild);
     while (!name.empty() && std::string_view("-_.").find(name.back()) != std::string_view::npos) {
@@ -593,7 +593,7 @@ std::string layer_title_of_file(const std::string& file) {
   return name;
 }
 
-/// The same, as it can stand in a URL.
+/// The same in a form that is valid in URLs.
 std::string url_name_of(std::string name) {
   name = name.substr(0, kMaxUrlNameLength);
   for (char& c : name) {
@@ -644,7 +644,7 @@ std::vector<ConfigOverride> environment_overrides(const char* const* environment
     const std::string name(entry.substr(0, equals));
     const auto setting = std::ranges::find(config_settings(), name, variable_of);
     const bool is_setting = setting != config_settings().end();
-    // Others may have their own variables.
+    // Other programs may have variables of their own.
     if (!is_setting && (!is_of_a_table(name) || is_service_link(name))) continue;
     overrides.push_back(
         {is_setting ? setting->name() : "", std::string(entry.substr(equals + 1)), name});

@@ -8,7 +8,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::uint64_t kMostFeatures = std::uint64_t{1} << 53;  // what a double holds exactly
+constexpr std::uint64_t kMostFeatures = std::uint64_t{1} << 53;  // exact as a double
 
 template <typename Number>
 std::optional<Number> number_in(std::string_view text) {

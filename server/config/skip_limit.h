@@ -1,4 +1,4 @@
-// How many features of a layer may be skipped before that is an error.
+// How many features of a layer may be skipped before it is an error.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,20 @@
 
 namespace trapeze {
 
-/// A number of features, or a share of all that the source has.
+/// A number of features, or a share of all features of the source.
 class SkipLimit {
  public:
-  /// All of them.
+  /// All may be skipped.
   constexpr SkipLimit() = default;
-  /// "12" or "0.5%", of 0 to 100 percent; nothing for any other text.
+  /// Parses "12" or "0.5%", with 0 to 100 percent; nothing for any other text.
   static std::optional<SkipLimit> parse(std::string_view text);
 
   static constexpr std::string_view kTakes =
       "a number of features, or a share of them such as \"1%\"";
 
-  /// As parse() takes it.
+  /// In the format of parse().
   std::string text() const;
-  /// Whether that many of so many features may be skipped.
+  /// Whether `skipped` of `features` may be skipped.
   bool allows(std::size_t skipped, std::size_t features) const;
 
   friend constexpr bool operator==(SkipLimit, SkipLimit) = default;
@@ -32,10 +32,10 @@ class SkipLimit {
   constexpr SkipLimit(bool is_share, double most) : is_share_(is_share), most_(most) {}
 
   bool is_share_ = true;
-  double most_ = 100;  // percent of a share; else features, a whole number
+  double most_ = 100;  // percent for a share; otherwise a number of features, an integer
 };
 
-/// In words that name the file, that more of its features were skipped than may be; empty if not.
+/// A message that names the file if too many of its features were skipped; empty if not.
 std::string find_excess(const LoadReport& report, SkipLimit limit);
 
 }  // namespace trapeze

@@ -54,7 +54,7 @@ void log_missing_title(const ServedLayer& served) {
                served.config.name, wanted);
 }
 
-/// What is wrong with a layer in parts that can be served all the same.
+/// Logs problems of a layer in parts that do not prevent it from being served.
 void log_parts(const LoadReport& report, const PreparedParts& parts) {
   spdlog::info("{}: {} parts, each loaded when needed", report.path, parts.parts().size());
   if (parts.overview() != nullptr || parts.parts().size() == 1) return;
@@ -101,7 +101,7 @@ void log_report(const ServedLayer& served) {
   if (report.loaded == 0) spdlog::warn("{}: contains no polygon to draw", report.path);
 }
 
-/// One progress for several layers that load at once: the mean of their shares.
+/// The combined progress of layers that load at the same time: the mean of their shares.
 class SharedProgress {
  public:
   SharedProgress(const std::vector<LayerConfig>& layers, LayersToRead* told)
@@ -130,7 +130,7 @@ class SharedProgress {
     progress_->show(is_known ? sum / static_cast<double>(shares_.size()) : -1);
   }
 
-  /// Waits for what reads the layer, which is not watched any longer then.
+  /// Waits until the layer has been read; it is not watched after that.
   void wait(std::size_t layer, const std::future<ServedLayer>& reading) {
     constexpr auto kLook = std::chrono::seconds(1);
     while (reading.wait_for(kLook) != std::future_status::ready) {
@@ -141,7 +141,7 @@ class SharedProgress {
     stalls_.finish(layer);
   }
 
-  /// The layer can be served.
+  /// The layer is ready to be served.
   void finish(std::size_t layer) {
     if (told_ != nullptr) told_->finish(layer);
   }
@@ -163,7 +163,7 @@ class SharedProgress {
   StallWatch stalls_;
 };
 
-/// Whether the same files lead to the same layer: all else is how it is shown.
+/// Whether the same files give the same layer: the other settings only affect how it is shown.
 bool are_read_the_same(const LayerConfig& a, const LayerConfig& b) {
   const OpenOptions how_a = how_to_open(a);
   const OpenOptions how_b = how_to_open(b);
@@ -174,7 +174,7 @@ bool are_read_the_same(const LayerConfig& a, const LayerConfig& b) {
          how_a.grid == how_b.grid && a.has_fast_topology() == b.has_fast_topology();
 }
 
-/// The layer as it was read before, if it would be the same now.
+/// The layer as it was read before, if reading it now would give the same.
 std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Dataset* previous) {
   if (previous == nullptr) return std::nullopt;
   const std::string state = state_of_sources(layer);
@@ -190,14 +190,14 @@ std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Datas
   return std::nullopt;
 }
 
-/// The layer as it is served now; null if it is not.
+/// The layer as it is being served; null if it is not.
 const ServedLayer* find_served(const LayerConfig& layer, const Dataset* previous) {
   if (previous == nullptr) return nullptr;
   const auto position = previous->find(layer.name, layer.grid);
   return position ? &previous->layers_on_all_grids()[*position] : nullptr;
 }
 
-/// In words, that a layer has lost most of what is served of it; empty if not.
+/// A message if a layer lost most of the features being served; empty if not.
 std::string find_loss(const ServedLayer& now, const Dataset* previous) {
   const ServedLayer* before = find_served(now.config, previous);
   if (now.config.may_shrink || before == nullptr) return {};
@@ -209,7 +209,7 @@ std::string find_loss(const ServedLayer& now, const Dataset* previous) {
       now.report.path, now.report.loaded, before->report.loaded);
 }
 
-/// Throws if layers that could be read are not to be served, with all reasons.
+/// Throws, with all reasons, if layers that could be read must not be served.
 void check_layers(const std::vector<ServedLayer>& layers, const Dataset* previous) {
   std::string problems;
   for (const ServedLayer& layer : layers) {
@@ -223,23 +223,23 @@ void check_layers(const std::vector<ServedLayer>& layers, const Dataset* previou
   if (!problems.empty()) throw std::runtime_error(problems);
 }
 
-/// What has not changed since `earlier` is taken over from there, unless that is null.
+/// Reuses everything that has not changed since `earlier`, unless that is null.
 LoadedLayer open_with(const LayerConfig& layer, OpenOptions options, const ServedLayer* earlier) {
   if (earlier == nullptr || !earlier->is_whole()) return open_layer(layer.file_to_open(), options);
   options.earlier = earlier->whole != nullptr ? earlier->whole : earlier->layer;
   LoadedLayer loaded = open_layer(layer.file_to_open(), options);
   if (earlier->is_whole()) return loaded;
-  // Its file was written into meanwhile.
+  // Its file was overwritten meanwhile.
   options.earlier = nullptr;
   return open_layer(layer.file_to_open(), options);
 }
 
-/// `progress` is called by the thread that calls this.
+/// `progress` is called by the calling thread.
 ServedLayer read_layer(const LayerConfig& layer, const ServedLayer* earlier,
                        const std::function<void(double)>& progress) {
   ServedLayer served;
   served.config = layer;
-  served.source_state = state_of_sources(layer);  // before reading: what changes meanwhile is read
+  served.source_state = state_of_sources(layer);  // before reading: later changes are noticed
   OpenOptions options = how_to_open(layer);
   options.progress = progress;
   if (earlier != nullptr) options.earlier_parts = earlier->parts;
@@ -257,7 +257,7 @@ ServedLayer read_layer(const LayerConfig& layer, const ServedLayer* earlier,
   served.file = std::move(loaded.file);
   served.parts = std::move(loaded.parts);
   served.label_anchors = loaded.label_anchors;
-  // Its fields may be in another file.
+  // Its fields may be defined in another file.
   if (served.report.driver == "GML" && served.file == nullptr) served.source_state.clear();
   return served;
 }
@@ -358,7 +358,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& con
                                              const Dataset* previous, LayersToRead* told,
                                              std::shared_ptr<const NamedTables> tables) {
   const std::vector<LayerConfig> layers = with_grids(configured);
-  // All at once: while one layer is at a step for one core, another one uses the others.
+  // All at the same time: while one layer is in a single-threaded step, others use the other cores.
   SharedProgress progress(layers, told);
   std::vector<ServedLayer> served(layers.size());
   std::vector<std::pair<std::size_t, std::future<ServedLayer>>> reading;

@@ -30,7 +30,7 @@ const char* key_of(OpenPart part, const LayerConfig& layer) {
   return layer.prepared.empty() ? "file" : "prepared";
 }
 
-/// In words, that more of a prepared layer was skipped than may be; empty if not.
+/// A message if a prepared layer has too many skipped features; empty if not.
 std::string find_prepared_excess(const LayerConfig& layer) {
   const std::string& file = layer.file_to_open();
   if (!is_pattern_of_files(file) && !is_prepared_file(file)) return {};

@@ -1,4 +1,4 @@
-// What is wrong with the configuration of a layer, without loading it.
+// Finds problems in the configuration of a layer without loading it.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@ namespace trapeze {
 
 struct LayerProblem {
   std::string key;                   // of the setting: "file"
-  std::optional<std::size_t> index;  // of a list: which item of it
+  std::optional<std::size_t> index;  // of the item, if the setting is a list
   std::string what;
-  bool is_warning = false;  // it is loaded all the same, and the log warns
+  bool is_warning = false;  // it is loaded nevertheless, with a warning in the log
 };
 
-/// All that would keep Dataset::load() from loading the layer, or make it warn, as far as it can be
-/// known without reading its source, see examine_layer(); of a prepared layer, that more of it was
-/// skipped than may be, too. Never throws for what is wrong. Thread-safety: any thread.
+/// Finds everything that would make Dataset::load() fail or warn for the layer, as far as it can be
+/// known without reading its source, see examine_layer(). For a prepared layer this includes too
+/// many skipped features. Reports problems instead of throwing. Thread-safety: any thread.
 std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer);
 
 }  // namespace trapeze

@@ -1,4 +1,5 @@
-// The summary of a layer, or of several served together, for documents: titles, bounds, zooms.
+// The summary of a layer, or of several layers served together, for documents: titles, bounds,
+// zooms.
 #pragma once
 
 #include <array>
@@ -19,22 +20,22 @@ using GeographicBounds = std::array<double, 4>;
 
 constexpr GeographicBounds kWorldBounds = {-180, -kMaxLatitude, 180, kMaxLatitude};
 
-/// Rounded to about a centimetre, which is what the grid resolves: shorter to read.
+/// Rounded to about a centimetre, the resolution of the grid, to keep the text short.
 double round_degrees(double degrees);
 
-/// The box is not empty.
+/// The box must not be empty.
 GeographicBounds bounds_in_degrees(const Box& box);
 
 struct LayerSummary {
-  std::string title;  // of all layers that differ, with commas, here and in the next two
+  std::string title;  // of all layers, comma-separated, no duplicates; as the next two
   std::string description;
   std::string attribution;
   Box box;  // empty if no layer has polygons
   int min_zoom = kMaxZoom;
   int max_zoom = 0;
-  std::optional<int> detail_zoom;  // up to which all are true of which that is known
+  std::optional<int> detail_zoom;  // the least known of the layers: accurate up to there
 
-  /// Those of the world if there is nothing.
+  /// The bounds of the world if there are no polygons.
   GeographicBounds bounds() const;
 };
 

@@ -13,25 +13,26 @@
 namespace trapeze {
 namespace {
 
-// Each makes drawing a little slower. So many become one when there is nothing else to do, or else
-// when there are the most.
+// Each patch makes drawing a little slower. At the first number patches are merged into one when
+// there is nothing else to do, at the second one in any case.
 constexpr std::size_t kManyPatches = 64;
 constexpr std::size_t kMostPatches = 256;
-// Beyond so many features at once, and this share of all, reading all takes less time.
+// With more features at a time, and more than this share of all, reading everything takes less
+// time.
 constexpr std::size_t kManyFeatures = 10'000;
 constexpr double kLargeShare = 0.1;
 
-// Cells: borders are snapped to each other over less.
+// Cells: borders are snapped to each other over smaller distances.
 constexpr double kTouch = 4;
 
-/// In cells, from which a feature may be drawn otherwise because of another.
+/// The distance, in cells, at which a feature may affect how another one is drawn.
 double reach_of(const LayerConfig& config) {
-  // What is a metre on the ground is up to 12 of the grid, at 85 degrees.
+  // A metre on the ground is up to 12 metres of the grid, at 85 degrees.
   constexpr double kCellsPerMetre = static_cast<double>(kGridSize) / 40'075'016.68;
   return kTouch + 12 * kCellsPerMetre * config.close_gaps.value_or(0);
 }
 
-/// Around each of its features.
+/// The bounding boxes of its features.
 std::vector<Box> places_of(const Layer& features) {
   std::vector<Box> places;
   for (std::uint32_t row = 0; row < features.features().size(); ++row) {
@@ -43,7 +44,7 @@ std::vector<Box> places_of(const Layer& features) {
   return places;
 }
 
-/// How many there are.
+/// The number of features.
 std::size_t features_of(const Layer& layer) {
   std::size_t features = 0;
   for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
@@ -88,7 +89,7 @@ std::optional<ServedLayer> LiveLayer::next() {
 std::optional<ServedLayer> LiveLayer::patch(std::span<const std::int64_t> ids) {
   const auto start = std::chrono::steady_clock::now();
   const std::optional<Reading> reading = read_changes(ids);
-  is_worn_ = true;  // so it is if there is too much, or if it cannot be applied
+  is_worn_ = true;  // stays set if there is too much to apply, or if it cannot be applied
   if (!reading) return std::nullopt;
   const Layer& features = *reading->features.layer;
   LayerChanges changes = patcher_->apply({reading->ids, features});
@@ -104,8 +105,8 @@ std::optional<ServedLayer> LiveLayer::patch(std::span<const std::int64_t> ids) {
   return served_;
 }
 
-/// Makes one patch of all. If that cannot be done, the layer is to be read whole, and is served as
-/// it is until then.
+/// Merges all patches into one. If that is not possible, the layer will be read in full, and is
+/// served as it is until then.
 std::optional<ServedLayer> LiveLayer::join_patches() {
   const std::vector<std::int64_t> changed(changed_.begin(), changed_.end());
   is_worn_ = true;

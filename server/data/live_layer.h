@@ -1,7 +1,7 @@
-// A layer of a database that tells which of its features have changed: only those, and what is
-// built together with them, are read and built anew.
+// A layer of a database that reports which of its features have changed: only these, and the
+// features built together with them, are read and built again.
 //
-// Belongs to one thread at a time.
+// Thread-safety: one thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -19,25 +19,25 @@ namespace trapeze {
 
 class LiveLayer {
  public:
-  /// Of a layer with a live_query that has not been read yet: what changes from here on is told.
+  /// For a layer with a live_query that has not been read yet: changes from here on are reported.
   /// Throws as ChangeFeed does.
   explicit LiveLayer(const LayerConfig& config);
 
-  /// Takes the layer as it has been read since. Returns it as it is to be served, so that no more
-  /// than what changes takes memory a second time. Throws std::runtime_error if two of its features
-  /// have one id.
+  /// Takes the layer as it was read afterwards. Returns it in the form to be served, in which only
+  /// changed features take memory a second time. Throws std::runtime_error if two features have the
+  /// same id.
   ServedLayer begin(ServedLayer read);
 
-  /// Its state after all that has changed since it was asked last; nothing if nothing has. Throws
-  /// std::exception if that cannot be known: next time it is tried again.
+  /// The state after all changes since the last call; nothing if there are none. Throws
+  /// std::exception if that cannot be determined; the next call tries again.
   std::optional<ServedLayer> next();
 
-  /// Whether it should be read whole again, as so much has changed by now.
+  /// Whether so much has changed that the layer should be read in full again.
   bool is_worn() const { return is_worn_; }
 
  private:
   std::optional<ServedLayer> patch(std::span<const std::int64_t> ids);
-  /// What there is to apply for changes of these; nothing if it is too much.
+  /// What to apply for these changes; nothing if it is too much.
   struct Reading {
     std::vector<std::int64_t> ids;
     LoadedLayer features;
@@ -51,7 +51,7 @@ class LiveLayer {
   ChangeFeed feed_;
   std::optional<LayerPatcher> patcher_;
   ServedLayer served_;
-  std::set<std::int64_t> changed_;  // since it was read whole
+  std::set<std::int64_t> changed_;  // since it was read in full
   std::uint64_t changes_taken_ = 0;
   bool is_worn_ = false;
 };

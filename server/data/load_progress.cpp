@@ -63,7 +63,7 @@ void LayersToRead::begin(std::vector<LayerProgress> layers) {
   layers_ = std::move(layers);
 }
 
-// What is left when all is read and built takes time, too.
+// The steps after everything has been read and built take time, too.
 void LayersToRead::show(std::size_t layer, double share) {
   constexpr double kLastPercent = 99;
   const std::lock_guard lock(mutex_);

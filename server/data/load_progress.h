@@ -1,6 +1,6 @@
-// How far the loading of files is, for those who wait for it.
+// Progress of loading files.
 //
-// Thread-safety: one thread at a time may use an object, but for LayersToRead.
+// Thread-safety: one thread at a time may use an object, except for LayersToRead.
 #pragma once
 
 #include <chrono>
@@ -12,12 +12,12 @@
 
 namespace trapeze {
 
-/// A bar when standard error is a terminal, otherwise a line in the log now and then.
+/// Shows a bar if standard error is a terminal, otherwise logs a line from time to time.
 class LoadProgress {
  public:
-  /// `name` is that of a source, which is shown without its password, or any words.
+  /// `name` is that of a source, which is shown without its password, or any text.
   explicit LoadProgress(const std::string& name);
-  /// Takes the bar away again.
+  /// Removes the bar.
   ~LoadProgress();
   LoadProgress(const LoadProgress&) = delete;
   LoadProgress& operator=(const LoadProgress&) = delete;
@@ -41,18 +41,17 @@ class LoadProgress {
 struct LayerProgress {
   std::string name;
   std::string title;
-  std::optional<int> percent;  // 100 when it is read; unknown of some sources
+  std::optional<int> percent;  // 100 when it is read; unknown for some sources
 };
 
-/// How far each of the layers is that are read together, for whoever asks meanwhile. Any number of
-/// threads may use it.
+/// The progress of each of the layers that are read together. Any number of threads may use it.
 class LayersToRead {
  public:
-  /// Begins anew, with layers of which nothing is read yet.
+  /// Starts with a new list of layers, none of which has been read.
   void begin(std::vector<LayerProgress> layers);
   /// `share` is in [0, 1], or negative if unknown.
   void show(std::size_t layer, double share);
-  /// That layer is read.
+  /// Marks that layer as read.
   void finish(std::size_t layer);
   /// Empty before the first begin().
   std::vector<LayerProgress> get() const;
@@ -62,19 +61,19 @@ class LayersToRead {
   std::vector<LayerProgress> layers_;
 };
 
-/// Warns of sources that do not get on: a database that does not answer, a disk that hangs. They
-/// cannot be told from what is slow, so the warning ends nothing.
+/// Warns about sources that make no progress: a database that does not answer, a disk that hangs.
+/// Since they cannot be distinguished from slow ones, nothing is aborted.
 class StallWatch {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Warns of what has not got on for so long.
+  /// Warns about sources without progress for that long.
   explicit StallWatch(const std::vector<std::string>& sources,
                       Clock::duration patience = std::chrono::seconds(30));
 
   void got_on(std::size_t source) { sources_[source].last = Clock::now(); }
   void finish(std::size_t source) { sources_[source].is_watched = false; }
-  /// To be called now and then; warns of a source once.
+  /// To be called regularly; warns once about each source.
   void look();
 
  private:

@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-// Who runs the server knows what it can hold: only what can hardly be meant is refused.
+// Operators know how much memory they have: only sizes that are most likely mistakes are refused.
 constexpr std::size_t kMostRows = 10'000'000;
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 

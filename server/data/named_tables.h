@@ -1,4 +1,4 @@
-// The tables of values that the configuration names, as they are in their files.
+// The named tables of values of the configuration, read from their files.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -13,11 +13,11 @@
 namespace trapeze {
 
 /// Reads all files. Throws std::runtime_error that names the table and its file if one cannot be
-/// read or is no table.
+/// read or is not a table.
 std::shared_ptr<const NamedTables> read_named_tables(
     const std::map<std::string, ValueTableConfig>& tables);
 
-/// What is wrong with one of them, in words; empty if nothing is.
+/// What is wrong with a table, as text; empty if nothing is.
 std::string find_table_problem(const ValueTableConfig& table);
 
 }  // namespace trapeze

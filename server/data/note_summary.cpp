@@ -15,7 +15,7 @@ std::string_view sort_of(const FeatureNote& note) {
   return reason.substr(0, reason.find(':'));
 }
 
-/// Each once, in order of the notes.
+/// Without duplicates, in the order of the notes.
 std::vector<std::int64_t> ids_of(std::span<const FeatureNote* const> notes) {
   std::vector<std::int64_t> ids;
   for (const FeatureNote* note : notes) {

@@ -1,4 +1,4 @@
-// Notes on features, made short enough for a log.
+// Shortens notes on features for a log.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace trapeze {
 
-/// One line for each sort of note, which its words before the first colon tell, in the order of the
-/// first of each: "features 4, 7, 9 and 80 more: repaired: its rings cross or touch". Where the
-/// words after the colon differ, those of the first feature are given. Any thread.
+/// One line for each kind of note, which is identified by its text before the first colon, in order
+/// of first occurrence: "features 4, 7, 9 and 80 more: repaired: its rings cross or touch". If the
+/// texts after the colon differ, that of the first feature is shown. Any thread.
 std::vector<std::string> summarize_notes(std::span<const FeatureNote> notes);
 
 }  // namespace trapeze

@@ -16,26 +16,26 @@
 namespace trapeze {
 namespace {
 
-// A shapefile is several files, of which one is named.
+// A Shapefile consists of several files, one of which is named.
 constexpr std::array<std::string_view, 4> kBesideShapefile = {".dbf", ".shx", ".prj", ".cpg"};
 
-/// The log into which SQLite may write changes first, until it brings them into the file.
+/// The log into which SQLite may write changes before it transfers them to the file.
 std::string write_ahead_log_of(const std::string& source) {
   return source + "-wal";
 }
 
-/// The files that have such a name now, and the folder, which changes when there are others.
+/// The files that currently match, and the folder, which changes when files are added or removed.
 void append_parts(const std::string& pattern, std::vector<std::string>& files) {
   const std::filesystem::path folder = std::filesystem::path(pattern).parent_path();
   files.push_back(folder.empty() ? "." : folder.string());
   try {
     for (std::string& file : files_of_pattern(pattern)) files.push_back(std::move(file));
   } catch (const std::runtime_error&) {
-    // There are none, which whoever reads them will say.
+    // There are none, which will be reported when they are read.
   }
 }
 
-/// Whether the source is one file, to which all changes are made itself.
+/// Whether the source is a single file that receives all changes directly.
 bool is_in_one_file(const std::string& source) {
   std::error_code error;
   return is_file_path(source) && std::filesystem::is_regular_file(source, error) &&
@@ -63,8 +63,8 @@ std::string state_of_files(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     struct stat status {};
     const bool is_there = stat(path.c_str(), &status) == 0;
-    // An empty file has as much to say as none; whoever reads a database of SQLite may make an
-    // empty log and remove it.
+    // An empty file counts as missing: reading an SQLite database may create an empty log and
+    // remove it.
     if (!is_there || (S_ISREG(status.st_mode) && status.st_size == 0)) {
       state += "-;";
       continue;
@@ -76,7 +76,7 @@ std::string state_of_files(const std::vector<std::string>& paths) {
 }
 
 std::string state_of_sources(const LayerConfig& layer) {
-  // Of a prepared layer, the file it was prepared from is only compared with it.
+  // For a prepared layer, the file it was prepared from is only compared with it.
   if (!is_in_one_file(layer.file_to_open())) return {};
   std::vector<std::string> files;
   append_files(layer.file, files);

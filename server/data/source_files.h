@@ -1,4 +1,4 @@
-// The files that layers are read from, and what can be seen of them without reading.
+// The files that layers are read from, and what can be determined about them without reading them.
 #pragma once
 
 #include <string>
@@ -8,17 +8,17 @@
 
 namespace trapeze {
 
-/// Appends the file that a source is, if it is one, and those that belong to it: the parts of a
-/// Shapefile, the write-ahead log that a file of SQLite, such as a GeoPackage, may have; those of a
-/// pattern, and their folder.
+/// Appends the file of a source, if it is a file, and the files that belong to it: the parts of a
+/// Shapefile, the write-ahead log of an SQLite file such as a GeoPackage; for a pattern, the
+/// matching files and their folder.
 void append_files(const std::string& source, std::vector<std::string>& files);
 
-/// What can be seen of files without reading them: equal as long as none was changed, replaced,
-/// added or removed. An empty file is as one that is not there.
+/// The state of files without reading their contents: equal as long as none is changed, replaced,
+/// added or removed. An empty file counts as missing.
 std::string state_of_files(const std::vector<std::string>& paths);
 
-/// The same of all that the layer is read from: equal only if reading it again would give the same
-/// layer. Empty if that cannot be told, as of a database or a folder.
+/// The same for everything that the layer is read from: equal only if reading it again would give
+/// the same layer. Empty if that cannot be determined, for example for a database or a folder.
 std::string state_of_sources(const LayerConfig& layer);
 
 }  // namespace trapeze

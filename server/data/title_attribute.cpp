@@ -10,7 +10,7 @@
 namespace trapeze {
 namespace {
 
-// The best first: a name in the language of the place before one in English.
+// Best first: a name in the local language before one in English.
 constexpr std::array<std::string_view, 5> kTitleNames = {"name", "name:en", "name_en", "title",
                                                          "label"};
 

@@ -1,4 +1,4 @@
-// Which attribute of a layer is the title of its features: what a reader calls them by.
+// Finds the attribute of a layer that serves as the title of its features.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -12,11 +12,11 @@
 
 namespace trapeze {
 
-/// The number of the field: of that name if one is given, else of a name like "name" or "title", in
-/// any case of letters. Nothing if there is none.
+/// The index of the field with that name, if one is given, or of a field with a name such as "name"
+/// or "title", ignoring case. Nothing if there is none.
 std::optional<int> title_field(const FeatureTable& features, std::string_view name = {});
 
-/// What it says of a feature, as text; empty if it says nothing.
+/// The title of a feature, as text; empty if it has none.
 std::string title_of(const FeatureTable& features, std::optional<int> field, std::uint32_t row);
 
 }  // namespace trapeze

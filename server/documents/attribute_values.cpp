@@ -32,7 +32,7 @@ Result<std::optional<Box>> box_of(const DocumentRequest& request) {
   return Problem{400, fmt::format("The parameter bbox takes {}.", takes), "bbox", *text, takes};
 }
 
-/// Whether they have something in common, or nearly so at a corner of the box.
+/// Whether they intersect, or nearly so at a corner of the box.
 bool meets(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box) {
   const double top = std::max(mesh.vertices[trapezoid.top].y, box.min_y);
   const double bottom = std::min(mesh.vertices[trapezoid.bottom].y, box.max_y);
@@ -43,7 +43,7 @@ bool meets(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box)
          std::max(right.x_at(top), right.x_at(bottom)) >= box.min_x;
 }
 
-/// By rows: whether the feature touches the box.
+/// By row: whether the feature touches the box.
 std::vector<bool> rows_in(const Layer& layer, const Box& box) {
   std::vector<bool> rows(layer.features().size());
   std::vector<TrapezoidRange> ranges;
@@ -61,14 +61,14 @@ bool holds(const Box& outer, const Box& inner) {
          outer.max_y >= inner.max_y;
 }
 
-/// Null where there is none, and for numbers that are not finite.
+/// Null if there is no value, or a number that is not finite.
 Value value_of(const FeatureTable& features, std::uint32_t row, int field) {
   const Value value = features.value(row, field);
   const auto* real = std::get_if<double>(&value);
   return real != nullptr && !std::isfinite(*real) ? Value() : value;
 }
 
-/// How often each value occurs, and how often there is none.
+/// How often each value occurs, and how many features have none.
 struct Counts {
   std::unordered_map<Value, std::size_t> by_value;
   std::size_t features = 0;
@@ -111,7 +111,7 @@ Json quantiles_json(const std::vector<Counted>& values, std::size_t count) {
   Json json = Json::array();
   if (count == 0) return json;
   const std::size_t steps = std::min(kQuantileSteps, count - 1);
-  std::size_t before = 0;  // features of lesser values
+  std::size_t before = 0;  // number of features with lesser values
   auto value = values.begin();
   for (std::size_t step = 0; step <= steps; ++step) {
     const std::size_t rank = steps == 0 ? 0 : step * (count - 1) / steps;
@@ -134,8 +134,8 @@ void count_values(const Layer& layer, const LayerStyle& style, int field,
   }
 }
 
-/// Those of the features that are drawn; the problem is one of the style, or that a part of the
-/// layer cannot be opened.
+/// Counts the values of the features that are drawn; the problem is one of the style, or a part of
+/// the layer that cannot be opened.
 Result<Counts> count_values(const ServedLayer& served, std::size_t position, int field,
                             const StyleQuery& asked, const std::optional<Box>& box) {
   const auto query = complete_style(asked, served.config);
@@ -149,7 +149,7 @@ Result<Counts> count_values(const ServedLayer& served, std::size_t position, int
   }
   for (const auto& part : served.parts->parts()) {
     if (box && !box->intersects(part->summary().bounds)) continue;
-    const auto layer = part->layer();  // which the part keeps, and texts are views of it
+    const auto layer = part->layer();  // kept alive by the part; texts are views of it
     if (layer == nullptr) return damaged_layer(served);
     count_values(*layer, *style, field, box, counts);
   }

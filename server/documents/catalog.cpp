@@ -28,8 +28,7 @@ Json fields_json(const FeatureTable& features) {
   return fields;
 }
 
-/// The style of a layer where a request does not say otherwise, in the words of the query
-/// parameters.
+/// The default style of a layer, as query parameters.
 Json style_json(const LayerConfig& config, std::size_t position) {
   Rgba fill = default_fill(config, position);
   const ParameterValue* set = config.style.find({}, ParameterId::fill_opacity);
@@ -42,7 +41,7 @@ Json style_json(const LayerConfig& config, std::size_t position) {
   return json;
 }
 
-/// The values of `topology` that the layer takes.
+/// The values of `topology` that the layer supports.
 Json topologies_json(const ServedLayer& served) {
   Json topologies = Json::array();
   for (const std::string_view name : kTopologyNames.names()) {
@@ -98,7 +97,7 @@ Json parameters_json() {
   return parameters;
 }
 
-/// Middle of the bounds, and the zoom at which their width is about that of two tiles.
+/// The centre of the bounds, and the zoom at which they are about two tiles wide.
 Json center_json(const LayerSummary& summary) {
   const auto [west, south, east, north] = summary.bounds();
   const double width = std::max(east - west, 1e-6);
@@ -119,8 +118,8 @@ std::string tiles_url(const TileJsonRequest& request, const std::string& base_ur
                      scale_suffix(request.scale), after_path(request.style.own.canonical_text()));
 }
 
-/// Where numbers of the layers are parted by a rule, or values joined: what came of it. The problem
-/// is one of the style.
+/// For layers whose numbers are classed by a rule, or that have joined values: the result. The
+/// problem is one of the style.
 struct Classifications {
   Json json = Json::object();  // by layer
   std::vector<std::string> attributions;
@@ -131,7 +130,7 @@ Result<Classifications> classifications_of(const TileJsonRequest& request, const
     const std::size_t position = *dataset.find(name);
     const ServedLayer& served = dataset.layers()[position];
     const auto complete = complete_style(request.full_style, served.config);
-    // What is wrong besides is told by the tiles.
+    // Other problems are reported by the tiles.
     if (!complete || !names_values(*complete, name)) continue;
     const auto style = layer_style(*complete, served, position);
     if (!style) return style.problem();
@@ -150,8 +149,8 @@ std::string legend_url(const TileJsonRequest& request, const std::string& base_u
                      scale_suffix(request.scale), after_path(request.style.query()));
 }
 
-/// Those in which labels can be: of tables of the configuration, and of attributes called as
-/// another one, a colon and a language.
+/// The languages available for labels: those of configured tables, and of attributes whose name is
+/// that of another one, followed by a colon and the language.
 std::set<std::string> languages_of(const Dataset& dataset) {
   std::set<std::string> languages;
   for (const auto& [name, named] : dataset.tables()) {
@@ -223,8 +222,8 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["scheme"] = "xyz";
   json["format"] = "png";
   json["tiles"] = {tiles_url(request, base_url)};
-  // Of the ground that a tile shows, in pixels of the map, at every scale: MapLibre reads it, and
-  // takes tiles for 512 pixels wide without it.
+  // The size of a tile in pixels of the map, at every scale: MapLibre reads it, and assumes 512
+  // without it.
   json["tileSize"] = kTilePixels;
   json["minzoom"] = summary.min_zoom;
   json["maxzoom"] = summary.max_zoom;
@@ -233,7 +232,7 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["center"] = center_json(summary);
   json["legend"] = legend_url(request, base_url);
   if (!classified->json.empty()) json["classification"] = classified->json;
-  json["vector_layers"] = Json::array();  // TileJSON 3.0 wants it always; these are pictures
+  json["vector_layers"] = Json::array();  // required by TileJSON 3.0, though these are pictures
   return to_text(json);
 }
 

@@ -1,4 +1,4 @@
-// Documents that describe what is served, as JSON text.
+// Documents that describe the served layers, as JSON text.
 #pragma once
 
 #include <string>
@@ -11,18 +11,18 @@
 
 namespace trapeze {
 
-/// As values of that type are called in JSON Schema.
+/// The name of that type in JSON Schema.
 std::string_view json_type_of(FieldType type);
 
 /// {"layers": [...], "generation": ..., "renderer": ..., "parameters": [...], "viewer": {"title":
 /// ..., "start": ...}}. The bounds of a layer without polygons are null; "title_attribute", "group"
-/// and "detail_zoom" of a layer are there where they are known. `base_url` is how this server is
-/// reached, without a '/' at the end.
+/// and "detail_zoom" of a layer are present if they are known. `base_url` is the URL of this
+/// server, without a final '/'.
 std::string catalog_json(const Dataset& dataset, const std::string& renderer,
                          const ViewerConfig& viewer, const std::string& base_url);
 
-/// TileJSON 3.0 of the layers together, the style of the request in its tile URLs. The problem is
-/// 404 for an unknown layer.
+/// TileJSON 3.0 of the layers drawn together, with the style of the request in its tile URLs. The
+/// problem is 404 for an unknown layer.
 Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dataset,
                               const std::string& base_url);
 

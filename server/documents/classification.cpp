@@ -21,7 +21,7 @@ std::size_t class_count(const Classing& classing, const ValueSpread& spread) {
   return spread.least() == spread.greatest() ? 1 : classing.breaks.size() + 1;
 }
 
-/// Why there are not as many classes as were asked for; empty if there are.
+/// Why there are fewer classes than requested; empty if there are not.
 std::string why_fewer(const BreakRule& rule, std::size_t classes, const ValueSpread& spread) {
   const bool is_exact = rule.method != BreakMethod::stddev && rule.method != BreakMethod::pretty;
   if (!is_exact || classes >= static_cast<std::size_t>(rule.classes)) return {};
@@ -47,7 +47,7 @@ Json classification_json(const LayerStyle& style) {
       json["missing"] = spread->missing;
       if (origin->rule) {
         const std::size_t classes = class_count(classing, *spread);
-        // One class is drawn as that above a break with nothing below it.
+        // A single class is drawn as the one above a break with nothing below it.
         if (classes == 1) json["breaks"] = Json::array();
         json["classes"] = classes;
         const std::string why = why_fewer(*origin->rule, classes, *spread);

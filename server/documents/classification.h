@@ -1,5 +1,4 @@
-// The numbers that came out where a style parts values into classes, and how a table fits a layer:
-// for documents.
+// How values were divided into classes, and how a table matches a layer, for documents.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -9,8 +8,8 @@
 
 namespace trapeze {
 
-/// By which attribute and rule, the breaks, how many values there are, and of joined ones which
-/// keys match nothing. Null of a style that neither parts numbers nor joins any.
+/// The attribute and the rule, the breaks, the number of values, and for joined values the keys
+/// that match nothing. Null for a style that neither classes numbers nor joins values.
 Json classification_json(const LayerStyle& style);
 
 }  // namespace trapeze

@@ -1,5 +1,4 @@
-// Documents about the layers that are made anew for every request: what they are made from, and
-// what comes out.
+// Documents about the layers, created for each request: their input and their output.
 #pragma once
 
 #include <cstddef>
@@ -24,14 +23,14 @@ struct DocumentRequest {
   const Dataset& dataset;
   const StyleBook& styles;
   const Fonts& fonts;
-  std::string base_url;           // how this server is reached, without a '/' at the end
-  std::vector<std::string> path;  // decoded segments, untrusted
-  std::vector<QueryPair> query;   // untrusted
-  std::uint64_t map_pixels = defaults::kMapPixels;  // that a picture of a window may have
+  std::string base_url;                             // URL of this server, without a final '/'
+  std::vector<std::string> path;                    // decoded segments, untrusted
+  std::vector<QueryPair> query;                     // untrusted
+  std::uint64_t map_pixels = defaults::kMapPixels;  // limit for the picture of a window
   const TileMatrixSets& sets = TileMatrixSets::built_in();
-  std::size_t max_layers = kMaxLayersPerTile;  // of one picture
+  std::size_t max_layers = kMaxLayersPerTile;  // limit for one picture
 
-  /// The value of the first pair of that name, or null.
+  /// The value of the first pair with that name, or null.
   const std::string* find(std::string_view name) const {
     for (const auto& [key, value] : query) {
       if (key == name) return &value;
@@ -39,7 +38,7 @@ struct DocumentRequest {
     return nullptr;
   }
 
-  /// The style that the query asks for. Problems, and the names of `others`, are those of
+  /// The style that the query sets. Problems, and the names in `others`, are those of
   /// StyleBook::read() and StyledQuery::style_for().
   Result<StyleQuery> style_for(std::span<const std::string> layers,
                                std::span<const std::string_view> others = {}) const {

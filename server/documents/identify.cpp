@@ -78,7 +78,7 @@ bool is_drawn(const PlaceQuery& request, const LayerConfig& config) {
          (*request.zoom >= config.min_zoom && std::floor(*request.zoom) <= config.max_zoom);
 }
 
-/// Of a text in JSON, quotes left out; what is no UTF-8 may become somewhat longer.
+/// The size of a text in JSON, without quotes; invalid UTF-8 may become slightly longer.
 std::size_t json_size(std::string_view text) {
   std::size_t size = text.size();
   for (const char c : text) {
@@ -88,9 +88,9 @@ std::size_t json_size(std::string_view text) {
   return size;
 }
 
-/// About the bytes of the attributes in the answer.
+/// The approximate size of the attributes in the answer, in bytes.
 std::size_t size_of_properties(const FeatureTable& features, std::uint32_t row) {
-  constexpr std::size_t kAroundValue = 32;  // indent, quotes, a number
+  constexpr std::size_t kAroundValue = 32;  // indentation, quotes, a number
   std::size_t size = 0;
   for (std::size_t field = 0; field < features.fields().size(); ++field) {
     size += kAroundValue + json_size(features.fields()[field].name);
@@ -150,8 +150,8 @@ class IdentifiedFeatures {
   std::size_t bytes_left_ = kMaxIdentifiedBytes;
 };
 
-/// Of all points of an outline; nothing if PROJ cannot tell, or where there may be a pole within
-/// it, of which they do not tell.
+/// The bounds of all points of an outline; nothing if PROJ cannot compute them, or if there may be
+/// a pole inside the outline, which the points do not show.
 std::optional<GeographicBounds> bounds_from_grid(const Rings& outline, const std::string& grid) {
   std::vector<double> x;
   std::vector<double> y;
@@ -207,7 +207,7 @@ struct FoundFeature {
   std::uint32_t row = 0;
 };
 
-/// The layer, or those of its parts that may have a feature there. The problem, 503, is that one
+/// The layer, or the parts of it that may have a feature there. The problem, 503, is a part that
 /// cannot be opened.
 Result<std::vector<std::shared_ptr<const Layer>>> layers_at(Point place,
                                                             const ServedLayer& served) {
@@ -222,7 +222,7 @@ Result<std::vector<std::shared_ptr<const Layer>>> layers_at(Point place,
   return layers;
 }
 
-/// The features that are found, or what is wrong with the style.
+/// The features found, or what is wrong with the style.
 Result<std::vector<FoundFeature>> find_features(const PlaceQuery& request,
                                                 const ServedLayer& served, std::size_t position) {
   const auto query = complete_style(request.style, served.config);
@@ -270,7 +270,7 @@ std::string words_of(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// "Lac Léman", or "water 7" of a feature without a title.
+/// "Lac Léman", or "water 7" for a feature without a title.
 std::string heading_of(const Json& feature) {
   if (feature.contains("title")) return words_of(feature["title"]);
   return fmt::format("{} {}", words_of(feature["layer"]), words_of(feature["id"]));

@@ -85,7 +85,7 @@ bool is_equal(std::string_view a, std::string_view b) {
   return in_lower_case(a) == in_lower_case(b);
 }
 
-/// A key that takes one value only.
+/// For a key with a single allowed value.
 std::optional<Problem> check(const KeyValuePairs& pairs, std::string_view key,
                              std::string_view value) {
   const auto& given = pairs[key];

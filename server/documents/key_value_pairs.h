@@ -1,5 +1,4 @@
-// What services of the OGC are asked by key-value pairs: keys may be written in any case of
-// letters.
+// Key-value pairs in requests to OGC services; keys ignore case.
 #pragma once
 
 #include <optional>
@@ -14,7 +13,7 @@
 
 namespace trapeze {
 
-/// The problem, with a code of the OGC and what it calls the parameter.
+/// The problem, with an OGC code and the parameter name that OGC uses.
 Problem ows_problem(int status, const char* code, std::string_view key, std::string detail,
                     std::string value = {});
 Problem missing(std::string_view key, std::string_view takes);
@@ -24,14 +23,14 @@ Problem invalid(std::string_view key, std::string_view takes, const std::string&
 /// A query, divided into the pairs of a service and others.
 class KeyValuePairs {
  public:
-  /// Without values. `keys` outlives the pairs.
+  /// Starts without values. `keys` must outlive the pairs.
   explicit KeyValuePairs(std::span<const std::string_view> keys)
       : keys_(keys), values_(keys.size()) {}
 
-  /// The value of one of the keys, as they are written there; nothing if it was not given.
+  /// The value of a key, spelled as in `keys`; nothing if it was not given.
   const std::optional<std::string>& operator[](std::string_view key) const;
   std::optional<std::string>& at(std::string_view key);
-  /// Whether it was given, and is not empty.
+  /// Whether the key was given and is not empty.
   bool has(std::string_view key) const { return (*this)[key] && !(*this)[key]->empty(); }
 
   std::vector<QueryPair> others;
@@ -41,22 +40,22 @@ class KeyValuePairs {
   std::vector<std::optional<std::string>> values_;
 };
 
-/// Other pairs that have no likeness to a parameter of styles are left out, as the standards want
-/// it. The problem is a key that is given twice.
+/// Other pairs that do not resemble a style parameter are ignored, as the standards require. The
+/// problem is a key that is given twice.
 Result<KeyValuePairs> divide(std::span<const QueryPair> query,
                              std::span<const std::string_view> keys);
 
-/// Of these pairs, those that are like a parameter of styles.
+/// The pairs that resemble a style parameter.
 std::vector<QueryPair> style_pairs(std::span<const QueryPair> query);
 
-/// In any case of letters.
+/// Ignores case.
 bool is_equal(std::string_view a, std::string_view b);
 
-/// What is wrong with a key that takes one value only.
+/// The problem of a key that does not have its only allowed value.
 std::optional<Problem> check(const KeyValuePairs& pairs, std::string_view key,
                              std::string_view value);
 
-/// Between commas; an empty list has none.
+/// Splits at commas; an empty list has no items.
 std::vector<std::string_view> split_list(std::string_view list);
 
 }  // namespace trapeze

@@ -29,24 +29,24 @@ constexpr std::string_view kJson = ".json";
 struct LegendEntry {
   std::string label;
   ClassPaint paint;
-  std::optional<double> from = {};  // of a class between breaks
+  std::optional<double> from = {};  // for a class between breaks
   std::optional<double> to = {};
 };
 
 struct LayerLegend {
   std::string name;
   std::string title;
-  std::string values_title;  // of joined values that colour the layer; empty: none do
+  std::string values_title;  // of joined values that colour the layer; empty: none
   LayerStyle style;
   std::vector<LegendEntry> entries;
 
-  /// Above the entries.
+  /// The text above the entries.
   std::string heading() const {
     return values_title.empty() ? title : fmt::format("{}: {}", title, values_title);
   }
 };
 
-/// Writes what the classes of a style mean.
+/// Writes the labels of the classes of a style.
 class ClassLabels {
  public:
   explicit ClassLabels(const LayerStyle& style) : style_(style) {
@@ -54,7 +54,7 @@ class ClassLabels {
     const bool has_digits =
         format_ && (format_->digits || format_->type != NumberFormat::Type::fixed);
     if (has_digits || !is_ruled()) return;
-    // Numbers that came out of a rule have more digits than anybody wants to read.
+    // Breaks computed by a rule have more digits than anyone wants to read.
     const double step = least_step();
     if (!(step > 0) || !std::isfinite(step)) return;
     NumberFormat apart = format_for_step(step);
@@ -63,7 +63,7 @@ class ClassLabels {
     format_->digits = apart.digits;
   }
 
-  /// By number of class, as LayerStyle::paints; classes in which nothing can be are left out.
+  /// By class number, as in LayerStyle::paints; classes that are always empty are left out.
   std::vector<LegendEntry> entries(const std::string& title) const {
     const Classing& classing = style_.classing;
     std::vector<LegendEntry> entries;
@@ -75,7 +75,7 @@ class ClassLabels {
     add(entries, !has_classes ? title : is_by_value ? "others" : "no data");
     if (!classing.highlighted_ids.empty()) add(entries, "highlighted");
     for (std::size_t i = 0; i < entries.size(); ++i) entries[i].paint = style_.paints[i];
-    // All numbers are the same: there is one class, and none below it.
+    // All numbers are equal: there is one class, and none below it.
     if (is_ruled() && between == 2 && least() == greatest()) entries.erase(entries.begin());
     return entries;
   }
@@ -125,12 +125,12 @@ class ClassLabels {
     return fmt::format("{}{}{}", text, kNoBreakSpace, style_.units);
   }
 
-  /// Whether a rule has parted numbers, of which there are some.
+  /// Whether a rule has classed numbers, and there are any.
   bool is_ruled() const {
     return style_.origin && style_.origin->rule && style_.origin->spread != nullptr &&
            !style_.origin->spread->is_empty();
   }
-  /// Whether the last digit says nothing, of any number of the labels.
+  /// Whether the last digit of all numbers in labels is zero.
   bool all_end_with_zero(const NumberFormat& format) const {
     const auto ends_with_zero = [&format](double number) {
       return formatted(number, format).ends_with('0');
@@ -138,7 +138,7 @@ class ClassLabels {
     return ends_with_zero(least()) && ends_with_zero(greatest()) &&
            std::ranges::all_of(style_.classing.breaks, ends_with_zero);
   }
-  /// Between the numbers of labels.
+  /// The smallest difference between numbers in labels.
   double least_step() const {
     double step = greatest() - least();
     double below = least();
@@ -155,7 +155,7 @@ class ClassLabels {
   std::optional<NumberFormat> format_;
 };
 
-/// What the joined values are, if they colour the layer.
+/// The title of the joined values, if they colour the layer.
 std::string title_of_values(const ServedLayer& served, const LayerStyle& style) {
   const JoinedValues* joined = style.classing.joined.get();
   if (joined == nullptr || !style.origin || style.origin->attribute != kJoinedName) return {};
@@ -237,10 +237,10 @@ std::string legend_json(const std::vector<LayerLegend>& legend) {
   return to_text({{"layers", layers}});
 }
 
-// Pixels at scale 1.
+// In pixels at scale 1.
 constexpr int kMargin = 6;
 constexpr int kRowHeight = 16;
-constexpr int kLayerGap = 8;  // above and below a layer of several classes
+constexpr int kLayerGap = 8;  // above and below a layer with several classes
 constexpr int kSwatchWidth = 20;
 constexpr int kSwatchHeight = 12;
 constexpr int kSwatchGap = 6;
@@ -248,8 +248,8 @@ constexpr double kMaxSwatchStroke = 4;
 constexpr int kMaxLabelWidth = 320;
 constexpr int kTextSize = 12;
 constexpr int kBaseLine =
-    12;  // of text below the top of its row, so that capitals are in the middle
-constexpr int kMaxHeight = 8192;  // many layers of many classes are a short request
+    12;  // from the top of its row to the base line, so that capitals are centred
+constexpr int kMaxHeight = 8192;  // a short request may have many layers with many classes
 constexpr Rgba kPaper{255, 255, 255, 255};
 constexpr Rgba kInk{0x22, 0x22, 0x22, 255};
 constexpr Rgba kFrame{0x88, 0x88, 0x88, 255};
@@ -272,7 +272,8 @@ std::vector<LegendRow> rows_of(const std::vector<LayerLegend>& legend) {
   };
   bool is_below_classes = false;
   for (const LayerLegend& layer : legend) {
-    // The only entry of a layer is labelled with its title, and is none of the classes above it.
+    // The only entry of a layer has the layer's title as its label, and does not belong to the
+    // classes above it.
     const bool has_classes = layer.entries.size() > 1;
     if (!rows.empty() && (has_classes || is_below_classes)) top += kLayerGap;
     if (has_classes) add(layer, layer.heading(), nullptr);
@@ -286,14 +287,14 @@ int left_of_label(const LegendRow& row) {
   return row.entry == nullptr ? kMargin : kMargin + kSwatchWidth + kSwatchGap;
 }
 
-/// A polygon drawn as the map does it: in a picture of its own, on paper.
+/// A polygon drawn as in the map: in a picture of its own, on paper.
 class Swatch {
  public:
   explicit Swatch(int scale)
       : scale_(scale),
         view_{kGridMin, kGridMin, kCellsPerPixel, kSwatchWidth * scale, kSwatchHeight * scale} {}
 
-  /// The result lasts until the next call.
+  /// The result is valid until the next call.
   const Picture& draw(const ClassPaint& paint, const LayerLegend& layer) {
     // Wider outlines would leave nothing of the fill.
     Stroke stroke = layer.style.stroke;
@@ -395,7 +396,7 @@ int height_of(const std::vector<LegendRow>& rows) {
   return (rows.empty() ? kMargin : rows.back().top + kRowHeight) + kMargin;
 }
 
-/// Labels as wide as there is room, by row.
+/// The labels by row, cut to the available width.
 std::vector<std::string> fitted_labels(const std::vector<LegendRow>& rows, const Fonts& fonts) {
   std::vector<std::string> labels;
   labels.reserve(rows.size());

@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kOwnParameters = {"bbox", "crs", "height", "width"};
 constexpr std::string_view kPattern =
     "/map/{layers}.png?bbox=W,S,E,N or /map/{layers}/{lon},{lat},{zoom}/{width}x{height}.png";
-constexpr int kUsualSide = 1024;  // of the longer side, in pixels of scale 1
+constexpr int kUsualSide = 1024;  // the longer side, in pixels at scale 1
 
 using FourNumbers = std::array<double, 4>;
 
@@ -75,7 +75,7 @@ std::optional<Centre> parse_centre(std::string_view text) {
   return Centre{grid_from_lonlat({*lon, *lat}), *zoom};
 }
 
-/// In pixels of scale 1.
+/// In pixels at scale 1.
 struct PictureSize {
   int width = 0;
   int height = 0;
@@ -119,7 +119,7 @@ Result<MapSystemPtr> system_of(const DocumentRequest& request) {
                                names_of(map_systems_of(request.dataset))));
 }
 
-/// Eastings are first whatever the system is, as they are without one.
+/// Eastings are always first, with or without a reference system in the request.
 Result<WindowSides> sides_of(const MapSystem& system, const DocumentRequest& request) {
   const std::string* text = request.find("bbox");
   const std::string value = text == nullptr ? std::string() : *text;
@@ -155,7 +155,7 @@ Result<PictureSize> size_of(const WindowSides& sides, const DocumentRequest& req
   return PictureSize{side_for(ratio, kUsualSide), kUsualSide};
 }
 
-/// All of a request but its style.
+/// Parses everything in a request except its style.
 Result<WindowRequest> parse_with_box(const DocumentRequest& request) {
   const auto name = parse_picture_name(request.path[1], kPattern);
   if (!name) return name.problem();

@@ -3,7 +3,7 @@
 //   /map/{layers}[@{1-4}x].{png,webp}?bbox=W,S,E,N[&width=][&height=][&crs=]
 //   /map/{layers}/{lon},{lat},{zoom}/{width}x{height}[@{1-4}x].{png,webp}
 //
-// with /s/{style} after the layers for a style that has a name, as tiles have it.
+// with /s/{style} after the layers for a named style, as in tile URLs.
 #pragma once
 
 #include <cstdint>
@@ -18,30 +18,30 @@
 
 namespace trapeze {
 
-/// The picture that is asked for. Width and height are in pixels of scale 1: a picture @2x has
-/// twice as many. Where one of them is missing, it follows from the sides of the window; without
-/// both, the longer side has 1024 pixels. The problem is 400 for what is malformed, 404 for another
-/// path or a style in the path that there is not.
+/// The requested picture. Width and height are in pixels of scale 1: a picture @2x has twice as
+/// many. If one of them is missing, it follows from the sides of the window; without both, the
+/// longer side has 1024 pixels. The problem is 400 for a malformed request, 404 for another path or
+/// an unknown style in the path.
 Result<WindowRequest> parse_map_picture(const DocumentRequest& request);
 
-/// The picture of the window, with `width` and `height` of the query or what follows from the
-/// sides, as parse_map_picture() has it.
+/// The picture of the window, with `width` and `height` from the query or determined from the sides
+/// as in parse_map_picture().
 Result<View> map_view(const WindowSides& sides, const DocumentRequest& request, int scale = 1,
                       Projection projection = Projection::mercator);
 
-/// "west,south,east,north" in degrees, of a window of Web Mercator. Where the west is east of the
-/// east, the window goes over the antimeridian; latitudes beyond the ends of the map are taken for
-/// these. Nothing if it is not four numbers, or if the window has no width or no height.
+/// Parses "west,south,east,north" in degrees, as a window of Web Mercator. If west is greater than
+/// east, the window crosses the antimeridian; latitudes beyond the ends of the map are clamped.
+/// Nothing if it is not four numbers, or if the window has no width or no height.
 std::optional<WindowSides> parse_window_in_degrees(std::string_view text);
-/// Which of the two axes a box has first: east, or that of the authority of the system.
+/// The axis order of a box: east first, or as the authority of the system defines it.
 enum class AxisOrder : std::uint8_t { east_first, of_authority };
 
-/// In units of the system, as they are: "west,south,east,north", or "south,west,north,east".
+/// In units of the system, without changes: "west,south,east,north", or "south,west,north,east".
 /// Nothing as above.
 std::optional<WindowSides> parse_window_in(const MapSystem& system, std::string_view text,
                                            AxisOrder order);
-/// The same, but in degrees, a window whose west is east of its east goes over the antimeridian,
-/// and latitudes are at most 90.
+/// The same, except that in degrees, a window whose west is greater than its east crosses the
+/// antimeridian, and latitudes are clamped to 90.
 std::optional<WindowSides> parse_window_around(const MapSystem& system, std::string_view text,
                                                AxisOrder order);
 

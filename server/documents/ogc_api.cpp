@@ -31,7 +31,7 @@ constexpr std::string_view kTilingSchemeRelation =
 constexpr std::string_view kTilingSchemesRelation =
     "http://www.opengis.net/def/rel/ogc/1.0/tiling-schemes";
 
-// Only what holds.
+// Lists only what is actually supported.
 constexpr std::array<std::string_view, 20> kConformance = {
     "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/core",
     "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/landing-page",
@@ -67,7 +67,7 @@ Problem nothing_here() {
 struct TiledResource {
   std::string path;                 // "/collections/lakes", or empty for the dataset
   std::vector<std::string> layers;  // bottom first
-  std::string selection;            // "collections=a,b" if only some were asked for
+  std::string selection;            // "collections=a,b" if only some were requested
 };
 
 Result<TiledResource> tiled_collection(const std::string& name, const Dataset& dataset) {
@@ -105,7 +105,7 @@ Result<TiledResource> tiled_dataset(const DocumentRequest& request) {
   return resource;
 }
 
-/// What must follow the path of a link to keep the resource and its style.
+/// The query that links need after their path to keep the resource and its style.
 Result<std::string> query_of(const TiledResource& resource, const DocumentRequest& request) {
   const auto style = request.style_link_for(resource.layers, kOwnParameters);
   if (!style) return style.problem();
@@ -179,7 +179,7 @@ Json collections_json(const DocumentRequest& request) {
   return {{"links", Json::array({self})}, {"collections", collections}};
 }
 
-/// What the list of tilesets and the tileset itself both say.
+/// The members shared by the list of tilesets and the tileset itself.
 Json tileset_head(const LayerSummary& summary, const TileMatrixSet& set) {
   Json json = {{"title", summary.title}, {"dataType", "map"}, {"crs", set.system->uri}};
   if (!set.uri.empty()) json["tileMatrixSetURI"] = set.uri;
@@ -196,7 +196,7 @@ std::vector<std::size_t> matrices_of(const LayerSummary& summary, const TileMatr
   return matrices;
 }
 
-/// Those that have tiles of all layers.
+/// The sets that have tiles of all layers.
 std::vector<TileMatrixSetPtr> sets_of(const TiledResource& resource,
                                       const DocumentRequest& request) {
   std::vector<TileMatrixSetPtr> sets = request.sets.of(request.dataset);
@@ -239,8 +239,8 @@ Json bounding_box(const GeographicBounds& bounds) {
           {"crs", crs84()->uri}};
 }
 
-/// Of the zooms only: where rows or columns are limited, GDAL 3.6, which is that of Debian 12,
-/// stretches the tiles, or finds none.
+/// Limits zooms only: if rows or columns are limited, GDAL 3.6, as in Debian 12, stretches the
+/// tiles, or finds none.
 Json limits_json(const LayerSummary& summary, const TileMatrixSet& set) {
   Json limits = Json::array();
   for (const std::size_t i : matrices_of(summary, set)) {
@@ -291,18 +291,18 @@ Json matrix_sets_json(const DocumentRequest& request) {
   return {{"tileMatrixSets", std::move(sets)}};
 }
 
-/// Of a place in the order of axes of the reference system.
+/// A place in the axis order of the reference system.
 Json place_json(const MapSystem& system, double x, double y) {
   return system.is_north_first ? Json{y, x} : Json{x, y};
 }
 
-/// Of both axes, in the same order.
+/// The names of both axes, in the same order.
 Json axes_json(const MapSystem& system) {
   if (system.is_in_degrees) return system.is_north_first ? Json{"Lat", "Lon"} : Json{"Lon", "Lat"};
   return system.is_north_first ? Json{"Y", "X"} : Json{"X", "Y"};
 }
 
-/// Around the first of the matrices.
+/// The bounds of the first matrix.
 Json matrix_set_box(const TileMatrixSet& set) {
   const TileMatrix& first = set.matrices.front();
   const double width = first.cell_size * first.tile_width * first.width;
@@ -315,8 +315,8 @@ Json matrix_set_box(const TileMatrixSet& set) {
           {"orderedAxes", axes_json(system)}};
 }
 
-/// In the terms of version 2 of the standard. What version 1 called otherwise is there under its
-/// old name too: GDAL 3.6, which is that of Debian 12, knows no other.
+/// In the terms of version 2 of the standard. Members renamed since version 1 are also included
+/// under their old name, the only one that GDAL 3.6, as in Debian 12, knows.
 Json matrix_set_json(const TileMatrixSet& set, const DocumentRequest& request) {
   Json matrices = Json::array();
   for (const TileMatrix& matrix : set.matrices) {
@@ -356,14 +356,14 @@ Result<Json> matrix_set_of(const std::string& id, const DocumentRequest& request
 
 std::span<const std::string> whole_path(const DocumentRequest& request) {
   const auto path = std::span(request.path);
-  return path.back().empty() ? path.first(path.size() - 1) : path;  // "/ogc/"
+  return path.back().empty() ? path.first(path.size() - 1) : path;  // for "/ogc/"
 }
 
 std::span<const std::string> path_below_ogc(const DocumentRequest& request) {
   return whole_path(request).subspan(1);
 }
 
-/// The resource that a path of tiles begins with.
+/// The resource at the beginning of a path of tiles.
 Result<TiledResource> tiled_resource(std::span<const std::string> path,
                                      const DocumentRequest& request) {
   return path[0] == "collections" ? tiled_collection(path[1], request.dataset)

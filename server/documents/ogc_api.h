@@ -1,5 +1,6 @@
-// OGC API - Tiles 1.0 below /ogc: the layers as collections, their tiles in WebMercatorQuad, and
-// the documents that lead there. Rows come before columns here.
+// OGC API - Tiles 1.0 below /ogc: the layers as collections, their tiles in WebMercatorQuad and
+// other tile matrix sets, and the documents that link to them. In these URLs, rows come before
+// columns.
 #pragma once
 
 #include <optional>
@@ -10,10 +11,10 @@
 
 namespace trapeze {
 
-/// Landing page, conformance, OpenAPI, collections, tilesets and tile matrix sets, all JSON.
+/// The landing page, conformance, OpenAPI, collections, tilesets and tile matrix sets, all as JSON.
 Result<Document> ogc_document(const DocumentRequest& request);
 
-/// The tile that a path below /ogc names; nothing if it names none.
+/// The tile that a path below /ogc refers to; nothing if it does not refer to a tile.
 std::optional<Result<PictureRequest>> parse_ogc_picture(const DocumentRequest& request);
 
 }  // namespace trapeze

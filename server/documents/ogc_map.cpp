@@ -26,7 +26,7 @@ Problem bad_value(std::string_view parameter, const std::string& value, const st
           value, takes};
 }
 
-/// What a parameter names, or what holds without it.
+/// The system that a parameter names, or the default.
 Result<MapSystemPtr> system_of(const DocumentRequest& request, std::string_view parameter,
                                const MapSystemPtr& usual) {
   const std::string* name = request.find(parameter);
@@ -54,7 +54,7 @@ Result<WindowSides> sides_of_layers(const std::vector<std::string>& layers, cons
   return system.sides_of(system.bounds_of(some));
 }
 
-/// Around a box in degrees; nothing if a part of it has no place on the plane.
+/// The bounds on the plane of a box in degrees; nothing if a part of the box cannot be projected.
 std::optional<WindowSides> sides_on_plane(const MapSystem& degrees, const WindowSides& box,
                                           const MapSystem& system) {
   constexpr int kSamples = 64;
@@ -103,7 +103,7 @@ Result<WindowSides> sides_of(const std::vector<std::string>& layers, const MapSy
   return *sides;
 }
 
-/// The format, from what `f` says.
+/// The format given by `f`.
 Result<TileFormat> format_of(const DocumentRequest& request) {
   const std::string* name = request.find("f");
   if (name == nullptr || *name == "png") return TileFormat::png;
@@ -111,7 +111,7 @@ Result<TileFormat> format_of(const DocumentRequest& request) {
   return bad_value("f", *name, has_webp() ? "png or webp" : "png");
 }
 
-/// As the standard has it, a map is transparent unless it has a colour to lie on.
+/// According to the standard, a map is transparent unless it has a background colour.
 Result<std::vector<QueryPair>> background_of(const DocumentRequest& request) {
   const std::string* colour = request.find("bgcolor");
   const std::string* transparent = request.find("transparent");

@@ -1,4 +1,4 @@
-// OGC API - Maps: a map of one collection, or of several.
+// OGC API - Maps: a map of one or several collections.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace trapeze {
 
-/// The map of these layers that a query asks for by bbox, bbox-crs, crs, width, height, bgcolor,
-/// transparent and f, and by parameters of styles. Without bbox it shows all of the layers. The
-/// problem is 400, or 404 for a layer that there is not.
+/// The map of these layers requested by a query with bbox, bbox-crs, crs, width, height, bgcolor,
+/// transparent and f, and with style parameters. Without bbox it shows the layers in full. The
+/// problem is 400, or 404 for an unknown layer.
 Result<WindowRequest> parse_ogc_map(const std::vector<std::string>& layers,
                                     const DocumentRequest& request);
 

@@ -46,7 +46,7 @@ Json schema_of(const StyleParameter& parameter) {
     case ParameterType::ramp:
     case ParameterType::classes:
     case ParameterType::style:
-    case ParameterType::breaks:  // numbers with commas between them, or a rule
+    case ParameterType::breaks:  // comma-separated numbers, or a rule
     case ParameterType::format:
     case ParameterType::table:
     case ParameterType::font:
@@ -113,7 +113,7 @@ Json uris_of_systems(const DocumentRequest& request) {
   return uris;
 }
 
-/// All that paths refer to, by the names that reference() takes.
+/// Everything that paths refer to, under the names used by reference().
 Json components_json(const DocumentRequest& request) {
   Json parameters;
   for (const StyleParameter& parameter : style_parameters()) {
@@ -267,7 +267,7 @@ Json response(std::string_view description, std::string_view type) {
   return {{"description", description}, {"content", {{type, {{"schema", schema}}}}}};
 }
 
-/// The names between braces of a path.
+/// The names in braces in a path.
 std::vector<std::string> names_in(std::string_view path) {
   std::vector<std::string> names;
   while (true) {
@@ -279,7 +279,7 @@ std::vector<std::string> names_in(std::string_view path) {
   }
 }
 
-/// Between blanks.
+/// Splits at spaces.
 std::vector<std::string_view> words_of(std::string_view text) {
   std::vector<std::string_view> words;
   while (!text.empty()) {
@@ -301,7 +301,7 @@ Json parameters_of(const Route& route) {
   return list;
 }
 
-/// The body of a POST: a style, as JSON.
+/// The body of a POST request: a style, as JSON.
 Json style_body_json() {
   Json properties;
   for (const StyleParameter& parameter : style_parameters()) {
@@ -343,11 +343,11 @@ Json get_json(const Route& route) {
   return get;
 }
 
-/// The body of a POST: a table of keys and values.
+/// The body of a POST request: a table of keys and values.
 Json table_body_json() {
   Json body = {{"required", true}};
   body["content"]["text/csv"]["schema"] = {{"type", "string"}};
-  // OpenAPI 3.0 knows no type that is one of two.
+  // OpenAPI 3.0 has no type for a choice of two.
   body["content"]["application/json"]["schema"] = {
       {"oneOf", {{{"type", "array"}, {"items", Json::object()}}, {{"type", "object"}}}}};
   return body;

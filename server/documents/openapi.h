@@ -1,4 +1,4 @@
-// What can be asked for, as an OpenAPI 3.0 document; the query parameters come from their table.
+// The OpenAPI 3.0 document of the server; the query parameters come from their table.
 #pragma once
 
 #include <string>

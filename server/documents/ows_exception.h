@@ -1,4 +1,4 @@
-// What is wrong with a request, in the words of OGC Web Services Common 1.1.
+// Problems with requests in the format of OGC Web Services Common 1.1.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace trapeze {
 
-/// The codes that requests are answered with besides those of all services.
+/// The codes used in answers, including those of single services.
 namespace ows {
 constexpr const char* kMissingParameterValue = "MissingParameterValue";
 constexpr const char* kInvalidParameterValue = "InvalidParameterValue";
@@ -25,12 +25,12 @@ constexpr const char* kStyleNotDefined = "StyleNotDefined";
 constexpr const char* kNoApplicableCode = "NoApplicableCode";
 }  // namespace ows
 
-/// The code of the problem; where that has none, InvalidParameterValue if it names a parameter,
-/// else NoApplicableCode.
+/// The code of the problem; if it has none, InvalidParameterValue if it names a parameter, else
+/// NoApplicableCode.
 std::string_view code_of(const Problem& problem);
 
-/// An ows:ExceptionReport of one exception. Its locator is the parameter. Bytes of the request are
-/// escaped and cut as problem_json() does.
+/// An ows:ExceptionReport with one exception. Its locator is the parameter. Bytes of the request
+/// are escaped and cut as in problem_json().
 std::string exception_report(const Problem& problem);
 
 }  // namespace trapeze

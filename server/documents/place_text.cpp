@@ -26,7 +26,7 @@ std::optional<double> parse_number(std::string_view text, double min, double max
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (!(number >= min && number <= max)) return std::nullopt;  // written so that NaN fails
+  if (!(number >= min && number <= max)) return std::nullopt;  // also rejects NaN
   return number;
 }
 

@@ -1,4 +1,4 @@
-// Numbers, places and boxes as they stand in addresses: in degrees, with commas between.
+// Numbers, places and boxes in URLs: in degrees, separated by commas.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -10,15 +10,15 @@
 
 namespace trapeze {
 
-/// The number that all of the text is, if it is one from `min` to `max`. A sign and an exponent may
-/// be written.
+/// The number, if the whole text is one from `min` to `max`. It may have a sign and an exponent.
 std::optional<double> parse_number(std::string_view text, double min, double max);
 
-/// "longitude,latitude": the cell that holds the place; of those on the edge of the world the last.
+/// Parses "longitude,latitude": the cell that contains the place; on the far edges of the world,
+/// the last cell.
 std::optional<Point> parse_place(std::string_view text);
 
-/// "west,south,east,north": from the cell of one corner to that of the other, neither west of east
-/// nor south of north.
+/// Parses "west,south,east,north": the box from the cell of one corner to that of the other. West
+/// must not be east of east, nor south north of north.
 std::optional<Box> parse_box(std::string_view text);
 
 }  // namespace trapeze

@@ -135,7 +135,7 @@ constexpr std::array<std::string_view, kAreas> kAreaNames = {
     "tiles", "map",  "legend", "identify", "values", "catalog", "styles",
     "wms",   "wmts", "ogc",    "health",   "ready",  "metrics", "other"};
 
-/// Takes the first segment off a path, and the slash before it.
+/// Removes the first segment, and the slash before it, from a path.
 constexpr std::string_view take_segment(std::string_view& path) {
   path.remove_prefix(path.starts_with('/') ? 1 : 0);
   const std::string_view segment = path.substr(0, path.find('/'));
@@ -147,7 +147,7 @@ constexpr std::string_view first_segment(std::string_view path) {
   return take_segment(path);
 }
 
-/// "wmts" of "wmts.xml".
+/// "wmts" for "wmts.xml".
 constexpr std::string_view stem_of(std::string_view segment) {
   return segment.substr(0, segment.find('.'));
 }

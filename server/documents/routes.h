@@ -1,5 +1,5 @@
-// Every path that this server understands, in one table: requests are dispatched by it, counted by
-// it, and the OpenAPI document is made from it. The viewer's files are not in it.
+// The table of all paths that this server understands, used for dispatching and counting requests,
+// and for the OpenAPI document. It does not contain the viewer's files.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace trapeze {
 
-/// What the first segment of a path says.
+/// The meaning of the first segment of a path.
 enum class Area : std::uint8_t {
   tiles,
   map,
@@ -34,7 +34,7 @@ constexpr std::size_t kAreas = static_cast<std::size_t>(Area::other) + 1;
 /// "tiles".
 std::string_view name_of(Area area);
 
-/// Of the OpenAPI document itself.
+/// The media type of the OpenAPI document.
 constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
 
 enum class RouteId : std::uint8_t {
@@ -86,27 +86,27 @@ enum class RouteId : std::uint8_t {
 
 struct Route {
   RouteId id;
-  std::string_view path;       // {name} stands for a segment, or for the rest of one
+  std::string_view path;       // {name} represents a segment, or the rest of one
   std::string_view operation;  // its operationId in OpenAPI; empty: not listed there
   std::string_view summary;
   std::string_view content_type;
-  bool has_style = false;       // takes the parameters of styles
-  std::string_view query = {};  // others that it takes, as OpenAPI names them, blanks between
+  bool has_style = false;       // accepts the style parameters
+  std::string_view query = {};  // other parameters, by OpenAPI name, separated by spaces
   std::string_view method = "GET";
 };
 
 std::span<const Route> routes();
 
-/// The area of a path, which is still encoded.
+/// The area of a percent-encoded path.
 Area area_of(std::string_view path);
 
-/// The route of GET for the decoded segments of a path; null if there is none. Names of pictures
-/// may be anything that ends as the route does.
+/// The GET route for the decoded segments of a path; null if there is none. Names of pictures may
+/// be anything with the extension of the route.
 const Route* find_route(std::span<const std::string> segments);
 
-/// "GET, HEAD, OPTIONS", and what else the path, which is still encoded, understands.
+/// "GET, HEAD, OPTIONS", and further methods that the percent-encoded path understands.
 std::string methods_of(std::string_view path);
-/// Whether it understands a method other than OPTIONS.
+/// Whether the path understands a method other than OPTIONS.
 bool understands(std::string_view path, std::string_view method);
 
 }  // namespace trapeze

@@ -33,8 +33,8 @@ Json summary_json(std::string_view id, const ValueTable& table) {
   return json;
 }
 
-/// A class for each of the commonest words that are short enough for an address, as `classes` takes
-/// them; empty if there are none.
+/// A class for each of the most frequent words that are short enough for a URL, in the format of
+/// `classes`; empty if there are none.
 std::string example_classes(const ValueTable& table) {
   constexpr std::size_t kMaxClasses = 8;
   constexpr std::size_t kMaxWord = 40;  // bytes
@@ -58,7 +58,7 @@ std::string example_classes(const ValueTable& table) {
   return format_value(classes);
 }
 
-/// As a query has it, without the '?'.
+/// As in a URL, without the '?'.
 std::string example_query(std::string_view id, const ValueTable& table, const std::string& join) {
   const std::string query = fmt::format("values={}&join={}", id, percent_encode(join));
   if (table.type() != FieldType::text) {
@@ -86,7 +86,7 @@ Result<Json> join_json(std::string_view id, const std::shared_ptr<const ValueTab
                                     served.config.name, example_query(id, *table, attribute))}};
 }
 
-/// Of the layer that is asked for, or of all that have an attribute to join by.
+/// For the requested layer, or for all layers with an attribute to join by.
 Result<Json> joins_json(std::string_view id, const std::shared_ptr<const ValueTable>& table,
                         const TableQuery& query, const Dataset& dataset,
                         const std::string& base_url) {

@@ -1,4 +1,4 @@
-// WMS 1.3.0 and 1.1.1: the capabilities, what lies under a pixel of a map, and legends.
+// WMS 1.3.0 and 1.1.1: capabilities, features at a pixel of a map, and legends.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,7 @@ namespace trapeze {
 /// are those of parse_wms_request().
 Result<Document> wms_document(const DocumentRequest& request);
 
-/// The map that is asked for, or what is wrong with the request; nothing if a document is asked
-/// for.
+/// The requested map, or what is wrong with the request; nothing if a document is requested.
 std::optional<Result<PictureRequest>> parse_wms_map(const DocumentRequest& request);
 
 }  // namespace trapeze

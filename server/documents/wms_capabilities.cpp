@@ -34,13 +34,13 @@ constexpr std::string_view kHead111 =
 <WMT_MS_Capabilities version="1.1.1">
 )";
 
-constexpr double kMetresPerPixel = 0.00028;  // that the OGC takes pixels for
+constexpr double kMetresPerPixel = 0.00028;  // pixel size assumed by the OGC
 
 double scale_denominator_of(int zoom) {
   return web_mercator_quad()->matrices[static_cast<std::size_t>(zoom)].scale_denominator;
 }
 
-/// Writes the document in one of the versions, which differ in names and in little else.
+/// Writes the document in one of the versions, which differ mainly in names.
 class CapabilitiesWriter {
  public:
   CapabilitiesWriter(const WmsCapabilitiesRequest& asked, const DocumentRequest& request)
@@ -60,7 +60,7 @@ class CapabilitiesWriter {
 
  private:
   std::string link(const std::string& address) const {
-    // In the version of old, every element that has a link names the namespace.
+    // In the old version, every element with a link declares the namespace.
     return fmt::format(R"(<OnlineResource{} xlink:type="simple" xlink:href="{}"/>)",
                        is_new_ ? "" : R"( xmlns:xlink="http://www.w3.org/1999/xlink")",
                        xml_escape(address));
@@ -165,14 +165,14 @@ class CapabilitiesWriter {
                       indent, west, south, east, north);
   }
 
-  /// In degrees the same numbers as the geographic bounds.
+  /// In degrees, the same numbers as in the geographic bounds.
   static SystemBounds bounds_of(const Box& box, const MapSystem& system) {
     if (!system.is_in_degrees) return system.bounds_of(box);
     const auto [west, south, east, north] = bounds_in_degrees(box);
     return {west, south, east, north};
   }
 
-  /// In the order of axes that GetMap of the version has.
+  /// In the axis order of GetMap in that version.
   void add_bounds_in(const MapSystem& system, const Box& box, std::string_view indent) {
     const Box some = box.is_empty() ? Box{kGridMin, kGridMin, kGridMax, kGridMax} : box;
     SystemBounds bounds = bounds_of(some, system);
@@ -193,7 +193,7 @@ class CapabilitiesWriter {
     if (!config.description.empty()) {
       xml_ += fmt::format("        <Abstract>{}</Abstract>\n", xml_escape(config.description));
     }
-    // What all layers are drawn in stands above them.
+    // Systems in which all layers can be drawn are listed above them.
     const auto systems = map_systems_of(request_.dataset, config.name);
     for (const MapSystemPtr& system : systems) {
       if (!is_for_all_layers(*system)) add_system(system->name);
@@ -215,7 +215,7 @@ class CapabilitiesWriter {
     xml_ += "      </Layer>\n";
   }
 
-  /// Of those that fit the layer.
+  /// Only if the style fits the layer.
   void add_style(const std::string& layer, const std::string& style, std::vector<QueryPair> query) {
     DocumentRequest legend = request_;
     legend.query = std::move(query);
@@ -235,7 +235,7 @@ class CapabilitiesWriter {
                         style, size->width, size->height, kWmsPng, link(address));
   }
 
-  /// A layer is drawn from its first zoom on, as far as the zoom after its last.
+  /// A layer is drawn from its first zoom on, up to the zoom after its last.
   void add_scales(const LayerConfig& config) {
     const bool has_least = config.max_zoom < kMaxZoom;
     const bool has_most = config.min_zoom > 0;

@@ -1,4 +1,4 @@
-// What WMS says of itself.
+// The capabilities document of WMS.
 #pragma once
 
 #include "server/documents/document.h"
@@ -7,8 +7,8 @@
 namespace trapeze {
 
 /// The capabilities: layers with their bounds, the styles that fit each of them, legends,
-/// attributions, and the scales at which they are drawn. A style in the query is kept in
-/// the addresses of maps and features.
+/// attributions, and the scales at which they are drawn. A style in the query is kept in the URLs
+/// for maps and features.
 Document wms_capabilities(const WmsCapabilitiesRequest& asked, const DocumentRequest& request);
 
 }  // namespace trapeze

@@ -49,7 +49,7 @@ Document report(const Problem& problem, WmsVersion version) {
   return {is_new ? "text/xml" : "application/vnd.ogc.se_xml", std::move(xml)};
 }
 
-/// Draws words from the north-west on, as many as there is room for.
+/// Draws words from the north-west corner on, as many as there is room for.
 void write(std::string_view words, const Fonts& fonts, Picture& picture) {
   const int width = picture.width - 2 * kMargin;
   std::string line;

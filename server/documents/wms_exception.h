@@ -1,4 +1,4 @@
-// What is wrong with a request to WMS, in the form that it asks for.
+// Problems with WMS requests, in the requested format.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace trapeze {
 
-/// A ServiceExceptionReport of the version that the query names; or, with EXCEPTIONS=INIMAGE, a
-/// picture of the size that it names with the words in it; with BLANK, one without. Where the query
-/// does not say how large that is, or says more than `most_pixels`, the report. Bytes of the
-/// request are escaped and cut as problem_json() does.
+/// A ServiceExceptionReport of the version in the query; with EXCEPTIONS=INIMAGE, a picture of the
+/// requested size that contains the message; with BLANK, an empty one. If the query does not state
+/// the size, or more than `most_pixels`, the report. Bytes of the request are escaped and cut as in
+/// problem_json().
 Document wms_exception(const Problem& problem, std::span<const QueryPair> query, const Fonts& fonts,
                        std::uint64_t most_pixels);
 

@@ -20,8 +20,8 @@
 namespace trapeze {
 namespace {
 
-// As the standard writes them, and those by which clients tell how fine their screen is. What else
-// stands in a query is about style, or about nothing.
+// As spelled in the standard, with those by which clients report the resolution of their screen.
+// All other keys in a query are style parameters, or are ignored.
 constexpr std::array<std::string_view, 34> kKeys = {
     "SERVICE",
     "REQUEST",
@@ -65,7 +65,7 @@ constexpr double kLeastDpi = 24;
 constexpr double kMostDpi = 1200;
 constexpr std::size_t kUsualFeatures = 1;
 
-/// With the empty ones: "a,,b" has three, and "" has one.
+/// Includes empty items: "a,,b" has three, and "" has one.
 std::vector<std::string> items_of(std::string_view list) {
   std::vector<std::string> items;
   while (true) {
@@ -76,7 +76,7 @@ std::vector<std::string> items_of(std::string_view list) {
   }
 }
 
-/// Where no version is given, the name of the reference system tells it.
+/// If no version is given, it follows from the name of the reference system parameter.
 WmsVersion version_of(const KeyValuePairs& pairs) {
   const auto& version = pairs.has("VERSION") ? pairs["VERSION"] : pairs["WMTVER"];
   if (!version || version->empty()) {
@@ -129,8 +129,8 @@ bool is_set(std::span<const QueryPair> query, std::string_view name, std::string
   });
 }
 
-/// Adds what a style sets for one layer, where the query does not. What holds for the whole
-/// picture is that of the first style that sets it.
+/// Adds the settings of a style for one layer, unless the query has them. Settings for the whole
+/// picture come from the first style that has them.
 void add_style_of(const std::string& layer, const StyleQuery& style,
                   std::vector<QueryPair>& query) {
   const std::vector<QueryPair> own = query;
@@ -138,7 +138,7 @@ void add_style_of(const std::string& layer, const StyleQuery& style,
   for (const StyleSetting& setting : of_layer.settings()) {
     const StyleParameter& parameter = style_parameter(setting.parameter);
     if (is_set(own, parameter.name, layer)) continue;
-    const ParameterValue* value = style.find(layer, setting.parameter);  // its own comes first
+    const ParameterValue* value = style.find(layer, setting.parameter);  // own values come first
     std::string name = parameter.is_per_layer ? fmt::format("{}.{}", layer, parameter.name)
                                               : std::string(parameter.name);
     if (std::ranges::find(query, name, &QueryPair::first) != query.end()) continue;
@@ -146,12 +146,12 @@ void add_style_of(const std::string& layer, const StyleQuery& style,
   }
 }
 
-/// The styles of the layers, one for each or none at all, and what the query sets besides.
+/// The styles of the layers, one for each or none at all, and the additional settings of the query.
 Result<StyleQuery> style_of(std::vector<QueryPair> query, std::span<const std::string> layers,
                             const KeyValuePairs& pairs, const StyleBook& styles) {
   const std::string list = pairs["STYLES"].value_or(std::string());
   const std::vector<std::string> names = items_of(list);
-  const std::vector<std::string> of_layers = items_of(*pairs["LAYERS"]);  // one may come twice
+  const std::vector<std::string> of_layers = items_of(*pairs["LAYERS"]);  // with duplicates
   if (!list.empty() && names.size() != of_layers.size()) {
     return ows_problem(400, ows::kStyleNotDefined, "STYLES",
                        "STYLES takes one name for each of LAYERS, or nothing at all.", list);
@@ -181,7 +181,7 @@ std::optional<Rgba> parse_background(const std::optional<std::string>& text) {
   return text->starts_with('#') ? parse_colour(*text) : std::nullopt;
 }
 
-/// What follows ';' is about palettes, which a picture has where it can.
+/// Parameters after ';' concern palettes, which pictures have if possible.
 std::optional<TileFormat> parse_format(std::string_view name) {
   const std::string_view type = name.substr(0, name.find(';'));
   if (is_equal(type, kWmsPng) || is_equal(type, "image/png8")) return TileFormat::png;
@@ -231,7 +231,7 @@ Result<MapSystemPtr> system_in(const KeyValuePairs& pairs, WmsVersion version,
   return system;
 }
 
-/// What BBOX takes.
+/// A description of valid values of BBOX.
 std::string words_of_box(const MapSystem& system, AxisOrder order) {
   const bool is_north_first = order == AxisOrder::of_authority && system.is_north_first;
   return fmt::format(
@@ -264,7 +264,7 @@ Result<View> view_of(const KeyValuePairs& pairs, const MapSystem& system, WmsVer
   return *view;
 }
 
-/// Of both GetMap and GetFeatureInfo.
+/// For both GetMap and GetFeatureInfo.
 Result<WindowRequest> window_in(const KeyValuePairs& pairs, const DocumentRequest& request) {
   for (const std::string_view key : {"SLD", "SLD_BODY"}) {
     if (!pairs.has(key)) continue;
@@ -273,7 +273,7 @@ Result<WindowRequest> window_in(const KeyValuePairs& pairs, const DocumentReques
   }
   auto layers = layers_in(pairs, "LAYERS", request.dataset);
   if (!layers) return std::move(layers).problem();
-  // Each time that one is named counts, as for LayerLimit.
+  // Duplicates count, as for LayerLimit.
   if (items_of(*pairs["LAYERS"]).size() > request.max_layers) {
     return invalid("LAYERS", fmt::format("at most {} layers", request.max_layers),
                    *pairs["LAYERS"]);
@@ -318,7 +318,7 @@ Result<WmsRequest> map_of(const KeyValuePairs& pairs, const DocumentRequest& req
   return WmsRequest(*std::move(window));
 }
 
-/// Of a pixel that is counted from 0.
+/// A pixel coordinate, counted from 0.
 Result<int> pixel_in(const KeyValuePairs& pairs, std::string_view key, int count) {
   const std::string takes = fmt::format("a pixel of the map, from 0 to {}", count - 1);
   if (!pairs.has(key)) return missing(key, takes);

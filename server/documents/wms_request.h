@@ -1,6 +1,6 @@
-// What is asked of WMS 1.3.0 and 1.1.1, by key-value pairs at /wms, where keys may be written in
-// any case of letters. Version 1.3.0 has the axes of a reference system in the order of its
-// authority, so that boxes of EPSG:4326 begin with latitudes, and 1.1.1 has eastings first always.
+// Requests to WMS 1.3.0 and 1.1.1, as key-value pairs at /wms; keys ignore case. Version 1.3.0 uses
+// the axis order of a reference system's authority, so boxes in EPSG:4326 begin with latitudes;
+// 1.1.1 always has eastings first.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,15 @@ std::string_view name_of(WmsVersion version);
 
 constexpr std::string_view kWmsPng = "image/png";
 constexpr std::string_view kWmsWebp = "image/webp";
-/// Pixels to an inch where lines are as wide as in tiles, which is what QGIS takes a screen for.
+/// Pixels per inch at which lines are as wide as in tiles; also what QGIS assumes for a screen.
 constexpr double kUsualDpi = 96;
 
 struct WmsCapabilitiesRequest {
   WmsVersion version = WmsVersion::v1_3_0;
-  std::string query = {};  // about style, to be kept in addresses: "fill=teal&", encoded
+  std::string query = {};  // style parameters to be kept in URLs: "fill=teal&", encoded
 };
 
-/// What lies under a pixel of a map.
+/// A query for the features at a pixel of a map.
 struct WmsFeatureInfoRequest {
   PlaceQuery query;
   IdentifyFormat format = IdentifyFormat::json;
@@ -48,22 +48,22 @@ struct WmsLegendRequest {
 using WmsRequest =
     std::variant<WmsCapabilitiesRequest, WindowRequest, WmsFeatureInfoRequest, WmsLegendRequest>;
 
-/// How what is wrong is to be told.
+/// How problems are reported.
 enum class WmsExceptions : std::uint8_t { xml, in_image, blank };
 
-/// What a query says of that and of the picture, as far as it can be understood.
+/// The parts of a query that determine error reports and the picture, as far as they are valid.
 struct WmsExceptionRequest {
   WmsVersion version = WmsVersion::v1_3_0;
   WmsExceptions exceptions = WmsExceptions::xml;
-  int width = 0;  // 0: not understood
+  int width = 0;  // 0: missing or invalid
   int height = 0;
   TileFormat format = TileFormat::png;
   Rgba background;
 };
 
-/// The problem has a code of WMS and the parameter as it calls it; 400, 404 or 501. Other pairs of
-/// the query style the map; those that have no likeness to a parameter of styles are passed over,
-/// as the standard wants it.
+/// The problem has a WMS code and the parameter name of WMS; its status is 400, 404 or 501. Other
+/// pairs of the query style the map; pairs that do not resemble a style parameter are ignored, as
+/// the standard requires.
 Result<WmsRequest> parse_wms_request(const DocumentRequest& request);
 
 WmsExceptionRequest parse_wms_exceptions(std::span<const QueryPair> query);

@@ -40,7 +40,7 @@ constexpr std::string_view kIdentification =
 constexpr std::string_view kGetCapabilities = "GetCapabilities";
 constexpr std::array<std::string_view, 3> kOperations = {kGetCapabilities, "GetTile",
                                                          "GetFeatureInfo"};
-// Of GetCapabilities.
+// For GetCapabilities.
 constexpr std::string_view kFormats =
     R"(      <ows:Parameter name="AcceptFormats">
         <ows:AllowedValues><ows:Value>application/xml</ows:Value></ows:AllowedValues>
@@ -84,7 +84,7 @@ bool is_drawn_in(const ServedLayer& served, const TileMatrixSet& set) {
 std::string style_xml(const std::string& layer, std::string_view style,
                       const std::string& base_url) {
   const bool is_default = style == StyleBook::kDefaultName;
-  // OpenLayers looks a style up by its title, and takes the first one if none has that.
+  // OpenLayers finds a style by its title, and uses the first one if no title matches.
   return fmt::format(R"(      <Style isDefault="{0}">
         <ows:Title>{1}</ows:Title>
         <ows:Identifier>{1}</ows:Identifier>
@@ -150,7 +150,8 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
   return xml + "    </Layer>\n";
 }
 
-/// As WMTS 1.0.0 writes the URI of a scale set: "urn:ogc:def:wkss:OGC:1.0:GoogleMapsCompatible".
+/// The URI of a scale set in the form of WMTS 1.0.0:
+/// "urn:ogc:def:wkss:OGC:1.0:GoogleMapsCompatible".
 std::string urn_of_scale_set(const TileMatrixSet& set) {
   return fmt::format("urn:ogc:def:wkss:OGC:1.0:{}",
                      set.scale_set.substr(set.scale_set.rfind('/') + 1));

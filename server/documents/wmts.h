@@ -1,4 +1,4 @@
-// WMTS 1.0.0: the capabilities, and what lies under a pixel of a tile.
+// WMTS 1.0.0: capabilities, and features at a pixel of a tile.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,7 @@ namespace trapeze {
 /// The capabilities, or the features of GetFeatureInfo. Problems are those of parse_wmts_request().
 Result<Document> wmts_document(const DocumentRequest& request);
 
-/// The tile that is asked for, or what is wrong with the request; nothing if a document is asked
-/// for.
+/// The requested tile, or what is wrong with the request; nothing if a document is requested.
 std::optional<Result<PictureRequest>> parse_wmts_tile(const DocumentRequest& request);
 
 }  // namespace trapeze

@@ -22,7 +22,7 @@
 namespace trapeze {
 namespace {
 
-// As the standard writes them. What else stands in a query is about style, or about nothing.
+// As spelled in the standard. All other keys in a query are style parameters, or are ignored.
 constexpr std::array<std::string_view, 15> kKeys = {
     "Service", "Request", "Version",       "AcceptVersions", "Sections", "Layer",
     "Style",   "Format",  "TileMatrixSet", "TileMatrix",     "TileRow",  "TileCol",
@@ -36,7 +36,7 @@ Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
   if (const auto& versions = pairs["AcceptVersions"]; versions && !versions->empty()) {
     const auto accepted = split_list(*versions);
     if (std::ranges::find(accepted, kWmtsVersion) == accepted.end()) {
-      // The standard wants no locator there.
+      // The standard requires that there is no locator.
       return ows_problem(400, ows::kVersionNegotiationFailed, {},
                          fmt::format("Only version {} of WMTS is supported.", kWmtsVersion),
                          *versions);
@@ -52,7 +52,7 @@ Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
     const bool is_identification = is_equal(section, "ServiceIdentification");
     const bool is_operations = is_equal(section, "OperationsMetadata");
     const bool is_contents = is_equal(section, "Contents");
-    // Of these there is nothing to tell.
+    // These sections have no contents here.
     const bool is_empty = is_equal(section, "ServiceProvider") || is_equal(section, "Themes");
     if (!is_all && !is_identification && !is_operations && !is_contents && !is_empty) {
       return invalid("Sections", kSections, *sections);
@@ -64,7 +64,7 @@ Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
   return WmtsRequest(request);
 }
 
-/// The parts of a request about a tile, as text.
+/// The parts of a request for a tile, as text.
 struct TileParts {
   std::string layer;
   std::string style;
@@ -82,7 +82,7 @@ struct ParsedNumber {
   std::uint32_t value = 0;
 };
 
-/// An integer that is negative or too long is one, and outside of all that there is.
+/// An integer that is negative or too long is valid, but outside every range.
 ParsedNumber parse_number(std::string_view text) {
   const bool is_negative = text.starts_with('-');
   const std::string_view digits = text.substr(is_negative ? 1 : 0);
@@ -94,7 +94,7 @@ ParsedNumber parse_number(std::string_view text) {
   return {NumberKind::number, value};
 }
 
-/// A number from `min` to `max`; the problem has the code of what is outside.
+/// A number from `min` to `max`; the problem for one outside has the given code.
 Result<std::uint32_t> number_in(std::string_view key, const std::string& text, std::uint32_t min,
                                 std::uint32_t max, const char* code, int status) {
   const std::string takes = fmt::format("an integer from {} to {} here", min, max);
@@ -106,7 +106,7 @@ Result<std::uint32_t> number_in(std::string_view key, const std::string& text, s
   return number.value;
 }
 
-/// The number of a matrix of the set.
+/// The index of a matrix in the set.
 Result<std::size_t> matrix_in(const TileMatrixSet& set, const std::string& name) {
   if (const TileMatrix* matrix = set.find(name)) {
     return static_cast<std::size_t>(matrix - set.matrices.data());
@@ -133,7 +133,7 @@ Result<std::vector<std::string>> layers_of(const std::string& list, const Datase
   return layers;
 }
 
-/// Those of all layers together; nothing at scales that none of them has.
+/// Of all layers together; nothing at scales at which none of them is drawn.
 std::optional<TileLimits> limits_of(std::span<const std::string> layers, const TileMatrixSet& set,
                                     std::size_t matrix, const Dataset& dataset) {
   std::optional<TileLimits> all;
@@ -232,7 +232,7 @@ Result<WmtsRequest> as_request(Result<TileRequest> tile) {
   return WmtsRequest(*std::move(tile));
 }
 
-/// The parts that GetTile and GetFeatureInfo have in common.
+/// The parts that GetTile and GetFeatureInfo share.
 Result<TileParts> parts_of(const KeyValuePairs& pairs) {
   if (auto problem = check(pairs, "Version", kWmtsVersion)) return std::move(*problem);
   TileParts parts;

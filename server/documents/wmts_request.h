@@ -1,5 +1,4 @@
-// What is asked of WMTS 1.0.0, by key-value pairs at /wmts, where keys may be written in any case
-// of letters, or by addresses:
+// Requests to WMTS 1.0.0, as key-value pairs at /wmts, with keys that ignore case, or as URLs:
 //
 //   /wmts.xml, /wmts/1.0.0/WMTSCapabilities.xml
 //   /wmts/{Layer}/{Style}/{TileMatrixSet}/{TileMatrix}/{TileRow}/{TileCol}.png
@@ -26,14 +25,14 @@ namespace trapeze {
 constexpr std::string_view kWmtsVersion = "1.0.0";
 constexpr std::string_view kWmtsFormat = "image/png";
 
-/// The sections of the capabilities that are asked for.
+/// The requested sections of the capabilities.
 struct WmtsCapabilitiesRequest {
   bool identification = true;
   bool operations = true;
   bool contents = true;
 };
 
-/// What lies under a pixel of a tile.
+/// A query for the features at a pixel of a tile.
 struct WmtsFeatureInfoRequest {
   PlaceQuery query;
   IdentifyFormat format = IdentifyFormat::json;
@@ -42,21 +41,21 @@ struct WmtsFeatureInfoRequest {
 
 using WmtsRequest = std::variant<WmtsCapabilitiesRequest, TileRequest, WmtsFeatureInfoRequest>;
 
-/// The tiles of a matrix in which the layer may show something: outside, there is no tile to WMTS.
-/// With a margin for outlines.
+/// The tiles of a matrix in which the layer may show something, with a margin for outlines. In
+/// WMTS, there are no tiles outside these.
 TileLimits wmts_limits(const ServedLayer& layer, const TileMatrixSet& set, std::size_t matrix);
-/// The sets that have tiles of some layer: of those whose rows are counted from the north, as WMTS
-/// counts them.
+/// The sets with tiles of some layer, without those whose rows are not counted from the north, as
+/// WMTS requires.
 std::vector<TileMatrixSetPtr> wmts_sets(const DocumentRequest& request);
 /// Whether the layer is drawn at that scale.
 bool has_tiles_of(const ServedLayer& layer, const TileMatrix& matrix);
 
-/// The problem has a code of OWS and the parameter as WMTS calls it; 404 for what there is not,
-/// else 400 or 501. Other pairs of the query style the tile; those that have no likeness to a
-/// parameter of styles are passed over, as the standard wants it.
+/// The problem has an OWS code and the parameter name of WMTS; its status is 404 for anything that
+/// does not exist, else 400 or 501. Other pairs of the query style the tile; pairs that do not
+/// resemble a style parameter are ignored, as the standard requires.
 Result<WmtsRequest> parse_wmts_request(const DocumentRequest& request);
 
-/// Whether the path, which is still encoded, is the one that takes key-value pairs.
+/// Whether the percent-encoded path is the one for key-value pairs.
 bool is_wmts_key_value_path(std::string_view path);
 
 }  // namespace trapeze

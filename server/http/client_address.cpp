@@ -80,7 +80,7 @@ std::optional<AddressRange> parse_address_range(std::string_view text) {
 ClientAddress client_behind(const ClientAddress& peer, std::string_view forwarded_for,
                             std::span<const AddressRange> trusted) {
   ClientAddress client = peer;
-  // From the right: each proxy has appended whom it heard from.
+  // From the right: each proxy appended the address of its peer.
   while (!forwarded_for.empty() && is_trusted(client, trusted)) {
     const std::size_t comma = forwarded_for.rfind(',');
     const bool is_last = comma == std::string_view::npos;

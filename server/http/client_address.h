@@ -1,4 +1,4 @@
-// Whose request it is: addresses, ranges of them, and what proxies say about them.
+// Addresses of clients, ranges of addresses, and what proxies report about clients.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace trapeze {
 
-/// An IPv6 address, or an IPv4 address as IPv6 writes it (::ffff:a.b.c.d).
+/// An IPv6 address, or an IPv4 address mapped to IPv6 (::ffff:a.b.c.d).
 struct ClientAddress {
   std::array<std::uint8_t, 16> bytes{};
 
@@ -27,32 +27,32 @@ struct ClientAddressHash {
   }
 };
 
-/// Nothing if the text is no IPv4 or IPv6 address.
+/// Nothing if the text is not an IPv4 or IPv6 address.
 std::optional<ClientAddress> parse_address(std::string_view text);
 
-/// As it is written: "192.0.2.7", "2001:db8::1".
+/// The usual text form: "192.0.2.7", "2001:db8::1".
 std::string address_text(const ClientAddress& address);
 
 /// All addresses that begin with the same bits.
 struct AddressRange {
   ClientAddress first;
-  int bits = 128;  // of the sixteen bytes
+  int bits = 128;  // of the 128 bits of an address
 
   bool contains(const ClientAddress& address) const;
 };
 
-/// "10.0.0.0/8", "2001:db8::/32", or one address. Nothing for other text.
+/// Parses "10.0.0.0/8", "2001:db8::/32", or a single address. Nothing for other text.
 std::optional<AddressRange> parse_address_range(std::string_view text);
 
-/// The client behind proxies that are trusted: the last address of `forwarded_for` (the value of
-/// X-Forwarded-For) that is not itself trusted. `peer`, who opened the connection, if it is not
-/// trusted, or if what it says is no address. What an untrusted client writes into the header
-/// itself is never believed.
+/// The client behind trusted proxies: the last address of `forwarded_for` (the value of
+/// X-Forwarded-For) that is not trusted itself. Returns `peer`, the other end of the connection, if
+/// it is not trusted, or if the header contains something other than an address there. Entries that
+/// an untrusted client wrote into the header itself are never believed.
 ClientAddress client_behind(const ClientAddress& peer, std::string_view forwarded_for,
                             std::span<const AddressRange> trusted);
 
-/// What limits are counted by: an IPv4 address, or the /64 of an IPv6 one, of which a single client
-/// has them all.
+/// The address by which limits are counted: an IPv4 address, or the /64 of an IPv6 address, since
+/// one client usually has a whole /64.
 ClientAddress limited_address(const ClientAddress& address);
 
 }  // namespace trapeze

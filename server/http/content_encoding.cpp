@@ -40,7 +40,7 @@ bool is_same_word(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-/// Of ";q=0.5", in [0, 1]; 1 if there is none, 0 if it is nonsense.
+/// The q of ";q=0.5", in [0, 1]; 1 if there is none, 0 if it is invalid.
 double weight_of(std::string_view parameters) {
   while (!parameters.empty()) {
     std::string_view value = take_until(';', parameters);
@@ -53,7 +53,7 @@ double weight_of(std::string_view parameters) {
   return 1;
 }
 
-/// How much an encoding is wanted; 0: not at all.
+/// The weight of an encoding; 0: not accepted.
 double weight_of(ContentEncoding encoding, std::string_view accept_encoding) {
   double others = 0;
   while (!accept_encoding.empty()) {

@@ -1,4 +1,4 @@
-// That a client has gone before it was answered.
+// Reports that a client disconnected before it was answered.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,8 @@ namespace trapeze {
 /// Thread-safety: all methods may be called from any thread.
 class Disconnection {
  public:
-  /// Calls `action` when the client goes: at once if it has. At most one action is kept.
+  /// Calls `action` when the client disconnects: immediately if it already has. Keeps at most one
+  /// action.
   void act(std::function<void()> action) {
     {
       const std::lock_guard lock(mutex_);
@@ -22,7 +23,7 @@ class Disconnection {
     action();
   }
 
-  /// To be called by the connection. Does nothing the second time.
+  /// Called by the connection. A second call does nothing.
   void happen() {
     std::function<void()> action;
     {
@@ -33,14 +34,14 @@ class Disconnection {
     if (action) action();
   }
 
-  /// Whether anybody wants to know.
+  /// Whether an action is set.
   bool is_awaited() const {
     const std::lock_guard lock(mutex_);
     return action_ != nullptr;
   }
 
  private:
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   bool has_happened_ = false;
   std::function<void()> action_;
 };

@@ -37,7 +37,7 @@ HttpResponse problem_response(const Problem& problem, std::chrono::duration<doub
 
 bool matches_entity_tag(std::string_view if_none_match, std::string_view entity_tag) {
   if (trim(if_none_match) == "*") return true;
-  // Our own tags hold no comma, so splitting at commas can only break tags that are not ours.
+  // Our own tags contain no comma, so splitting at commas can only break other tags.
   while (!if_none_match.empty()) {
     const std::size_t comma = std::min(if_none_match.find(','), if_none_match.size());
     std::string_view tag = trim(if_none_match.substr(0, comma));

@@ -1,4 +1,4 @@
-// Requests and responses as the server thinks of them, whatever library speaks HTTP.
+// Requests and responses as used in the server, independent of the HTTP library.
 #pragma once
 
 #include <chrono>
@@ -21,8 +21,8 @@ struct HttpRequest {
   std::string host;           // as sent, unchecked; empty if none was
   std::string if_none_match;  // as sent; empty if none was
   std::string body = {};      // untrusted
-  ClientAddress client = {};  // who asks: the peer, or whom a trusted proxy speaks for
-  std::shared_ptr<Disconnection> disconnection = {};  // null: it is not watched for
+  ClientAddress client = {};  // the peer, or the client that a trusted proxy reports
+  std::shared_ptr<Disconnection> disconnection = {};  // null: not watched
   std::string accept_encoding = {};                   // as sent; empty if none was
   std::string content_type = {};                      // of the body, as sent; empty if none was
   std::string content_encoding = {};                  // of the body, as sent; empty if none was
@@ -31,10 +31,11 @@ struct HttpRequest {
 struct HttpResponse {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;
-  /// Null for responses that have none (204, 304). For HEAD it is what GET would send: the
-  /// connection leaves it out and keeps its length.
+  /// Null for responses without a body (204, 304). For HEAD it is the body that GET would return:
+  /// the connection does not send it but states its length.
   std::shared_ptr<const std::string> body;
-  /// What the body tells of, so that it can be told in other words; null if all went well.
+  /// The problem that the body describes, so that it can be rendered in another format; null if
+  /// there is none.
   std::shared_ptr<const Problem> problem = {};
 
   std::string_view header(std::string_view name) const {
@@ -47,13 +48,13 @@ struct HttpResponse {
 
 using Respond = std::function<void(HttpResponse)>;
 
-/// The response that tells of a problem, as application/problem+json, not to be stored by caches.
-/// With 503 it asks the client to try again after a second.
+/// The response for a problem, as application/problem+json, not to be stored by caches. With status
+/// 503 it asks the client to retry after a second.
 HttpResponse problem_response(const Problem& problem);
-/// The same, to be tried again after so long; rounded up to seconds, one at least.
+/// The same with the given retry time, rounded up to seconds, at least one.
 HttpResponse problem_response(const Problem& problem, std::chrono::duration<double> retry_after);
 
-/// Whether an If-None-Match header names `entity_tag` (weakly compared, as RFC 7232 wants it).
+/// Whether an If-None-Match header names `entity_tag` (weak comparison, as RFC 7232 requires).
 bool matches_entity_tag(std::string_view if_none_match, std::string_view entity_tag);
 
 }  // namespace trapeze

@@ -35,29 +35,29 @@ namespace net = boost::asio;
 using tcp = net::ip::tcp;
 using ErrorCode = beast::error_code;
 using Clock = std::chrono::steady_clock;
-// Of one thread, which needs neither locks nor strands for it.
+// Run by a single thread, so that neither locks nor strands are needed.
 using Executor = net::io_context::executor_type;
 using Socket = net::basic_stream_socket<tcp, Executor>;
 using Timer = net::basic_waitable_timer<Clock, net::wait_traits<Clock>, Executor>;
 
 constexpr std::size_t kMaxBuffer = std::size_t{64} << 10;  // of requests read ahead
-// What a client posts to HttpServerOptions::long_body_path lies in memory until it is answered.
-constexpr std::size_t kMostLongBodies = 8;       // at once
-constexpr std::size_t kMostLongBodiesOfOne = 3;  // address
-constexpr std::size_t kFirstRead = 2048;         // most requests come as a whole
-// A connection that is closed while the client still sends would be reset, and the response lost:
-// so what it sends is read and thrown away for a little while.
+// Bodies posted to HttpServerOptions::long_body_path stay in memory until they are answered.
+constexpr std::size_t kMostLongBodies = 8;       // at the same time
+constexpr std::size_t kMostLongBodiesOfOne = 3;  // for one address
+constexpr std::size_t kFirstRead = 2048;         // most requests arrive complete
+// Closing a connection while the client is still sending would reset it, and the response would be
+// lost. So incoming data is read and discarded for a short time.
 constexpr auto kLingerTime = std::chrono::seconds(1);
 constexpr std::size_t kMaxLingerBytes = std::size_t{256} << 10;
-// Connections above the limit that are told so; those beyond are dropped without a word.
+// Connections above the limit that get a response saying so; further ones are closed without any.
 constexpr std::size_t kMaxRefusals = 64;
 constexpr auto kRefusalPause = std::chrono::seconds(1);
-// A client that has closed its sending side has gone, most likely, but some still read an answer
-// that comes at once.
+// A client that has closed its sending side has probably gone, but some still read a response that
+// comes immediately.
 constexpr auto kHalfClosedTime = std::chrono::seconds(1);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 constexpr auto kWarningPause = std::chrono::seconds(1);
-// How often connections are looked at that may have taken too long.
+// How often connections are checked for timeouts.
 constexpr auto kShortestRound = std::chrono::milliseconds(10);
 constexpr auto kLongestRound = std::chrono::milliseconds(500);
 
@@ -77,7 +77,7 @@ std::string_view view_of(beast::string_view view) {
   return {view.data(), view.size()};
 }
 
-/// A header that comes several times is one list.
+/// Joins the values of a header that occurs several times into one list.
 std::string list_of(const http::request<http::string_body>& message, beast::string_view name) {
   std::string list;
   const auto [first, last] = message.equal_range(name);
@@ -88,7 +88,7 @@ std::string list_of(const http::request<http::string_body>& message, beast::stri
   return list;
 }
 
-/// So that no limit is exceeded by much.
+/// The interval between checks: short enough that no timeout is exceeded by much.
 std::chrono::milliseconds round_for(const HttpServerOptions& options) {
   const auto shortest =
       std::min({options.idle_timeout, options.read_timeout, options.write_timeout});
@@ -107,7 +107,8 @@ tcp::endpoint endpoint_of(const HttpServerOptions& options) {
 
 }  // namespace
 
-/// Everything that connections share. It outlives them: those that wait for a worker hold it.
+/// Everything that connections share. It outlives them: connections waiting for a worker hold a
+/// reference.
 class HttpServer::State : public std::enable_shared_from_this<State> {
  public:
   State(const HttpServerOptions& options, Handler handler, Observer observer);
@@ -122,13 +123,13 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   const Handler& handler() const { return handler_; }
   const Observer& observer() const { return observer_; }
   bool is_stopping() const { return is_leaving_; }
-  /// Whether connections are to end with the request that they answer.
+  /// Whether connections close after the current request.
   bool is_draining() const { return is_draining_; }
   bool is_trusted(const ClientAddress& peer) const;
   std::size_t connections() const;
   std::uint64_t refusals() const { return refusals_; }
 
-  /// Whether there is room for another long body of that client; if so, leave_room() gives it back.
+  /// Reserves room for another long body of that client, if there is any; leave_room() releases it.
   bool take_room(const ClientAddress& client, bool is_trusted);
   void leave_room(const ClientAddress& client);
 
@@ -141,7 +142,7 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   void on_accepted(const ErrorCode& error, Socket socket);
   void warn_of_refusal(const ErrorCode& error);
   void admit(Socket socket);
-  /// Ends connections that have taken too long, again and again while there are any.
+  /// Closes connections that have timed out; repeats while there are connections.
   void begin_rounds();
   void make_round();
   std::vector<std::shared_ptr<Connection>> alive_connections() const;
@@ -160,15 +161,15 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   std::atomic<bool> is_draining_ = false;
   std::atomic<std::uint64_t> refusals_ = 0;
 
-  mutable std::mutex mutex_;  // guards the five below
+  mutable std::mutex mutex_;  // guards the next five
   std::size_t long_bodies_ = 0;
   std::unordered_map<ClientAddress, std::size_t, ClientAddressHash> long_bodies_of_;
   std::unordered_set<Connection*> connections_;
   std::unordered_map<ClientAddress, std::size_t, ClientAddressHash> connections_of_;
   bool has_run_ = false;
 
-  // Of a thread each, which has its share of the connections. Last, so that what still is in their
-  // queues when they go finds the rest alive.
+  // Each with one thread and its share of the connections. Last, so that everything else is alive
+  // when their remaining work is destroyed.
   struct IoThread {
     net::io_context io{1};
     net::executor_work_guard<Executor> work{io.get_executor()};
@@ -177,7 +178,7 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   const std::vector<std::unique_ptr<IoThread>> io_threads_;
   std::size_t next_thread_ = 0;  // for the next connection
 
-  const Executor control_;  // of the first of them, for everything below
+  const Executor control_;  // of the first I/O thread, for everything below
   net::basic_socket_acceptor<tcp, Executor> acceptor_;
   Timer accept_timer_;
   Clock::time_point next_warning_;  // that connections cannot be accepted
@@ -189,8 +190,8 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   net::basic_signal_set<Executor> hangups_;
 };
 
-/// One client. Reads a request, answers it, and only then reads the next: so pipelined requests
-/// are answered in order. Everything happens on the thread of its socket.
+/// One client. Reads a request, answers it, and only then reads the next, so pipelined requests are
+/// answered in order. Everything runs on the thread of its socket.
 class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(State& state, Socket socket, const ClientAddress& peer)
@@ -211,14 +212,14 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   void start();
   void refuse(const Problem& problem);
   const ClientAddress& peer() const { return peer_; }
-  /// Closes the connection if it waits for a request; else it is closed after the response.
+  /// Closes the connection if it is waiting for a request; otherwise it closes after the response.
   /// From any thread.
   void drain();
-  /// Closes the connection if it has taken longer than it may. From any thread.
+  /// Closes the connection if it has timed out. From any thread.
   void end_if_late();
 
  private:
-  /// From now on; what has not come to an end then is closed.
+  /// Sets the deadline, counted from now; the connection is closed after it.
   void allow(std::chrono::milliseconds time) { deadline_ = Clock::now() + time; }
   void allow_any_time() { deadline_ = Clock::time_point::max(); }
   bool is_late() const { return deadline_.load() < Clock::now(); }
@@ -226,22 +227,23 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   void read();
   void await_first_byte();
   void read_request();
-  /// A client that waits for leave to send its body gets it (RFC 9110, section 10.1.1).
+  /// Answers a client that waits for permission to send its body (RFC 9110, section 10.1.1).
   void ask_for_body();
   void read_body();
-  /// How long the body of the request may be whose header was read.
+  /// Maximum body length of the request whose header was read.
   std::uint64_t body_limit() const;
-  /// False if it is a long one, and there are too many of them: then it is answered.
+  /// False if the body is long and there are too many long ones; the request is answered in that
+  /// case.
   bool has_room_for_body();
   void leave_room();
   void on_read(const ErrorCode& error);
   void answer_unreadable(const ErrorCode& error);
-  /// Whether it is the request line, and not the fields after it, that broke the limit.
+  /// Whether the request line exceeded the limit, not the fields after it.
   bool is_request_line_too_long() const;
   Problem target_too_long() const;
   void handle(http::request<http::string_body>& message);
   ClientAddress client_of(const http::request<http::string_body>& message) const;
-  /// Watches for the client to go until the response is sent.
+  /// Watches for the client to disconnect until the response is sent.
   void watch_for_disconnection();
   void on_readable_while_watching();
   void stop_watching();
@@ -261,7 +263,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   std::optional<http::request_parser<http::string_body>> parser_;
   Timer half_closed_timer_;
   bool is_watching_ = false;
-  bool is_reading_ = false;  // and nobody has asked for anything yet, if the buffer is empty
+  bool is_reading_ = false;  // and no request has begun, if the buffer is empty
 
   // The request being answered.
   HttpRequest request_;
@@ -297,7 +299,7 @@ void HttpServer::Connection::drain() {
   net::post(socket_.get_executor(), [self = shared_from_this()] {
     const bool is_idle =
         self->is_reading_ && self->buffer_.size() == 0 && !self->parser_->got_some();
-    ErrorCode ignored;  // it may have gone already
+    ErrorCode ignored;  // may be closed already
     if (is_idle) self->socket_.close(ignored);
   });
 }
@@ -305,7 +307,7 @@ void HttpServer::Connection::drain() {
 void HttpServer::Connection::end_if_late() {
   if (!is_late()) return;
   net::post(socket_.get_executor(), [self = shared_from_this()] {
-    ErrorCode ignored;  // it may have gone already
+    ErrorCode ignored;  // may be closed already
     if (self->is_late()) self->socket_.close(ignored);
   });
 }
@@ -314,7 +316,7 @@ void HttpServer::Connection::read() {
   if (state_.is_draining() && buffer_.size() == 0) return close_gently();
   parser_.emplace();
   parser_->header_limit(state_.options().header_limit);
-  // Of any request, until its path is known.
+  // For any request, until its path is known.
   parser_->body_limit(std::max(state_.options().body_limit, state_.options().long_body_limit));
   is_reading_ = true;
   if (buffer_.size() > 0) return read_request();
@@ -332,7 +334,7 @@ void HttpServer::Connection::await_first_byte() {
                           });
 }
 
-// The time runs on from the first byte, however slowly the others come.
+// The timeout counts from the first byte, however slowly the rest arrives.
 void HttpServer::Connection::read_request() {
   allow(state_.options().read_timeout);
   const auto on_header = [this](const ErrorCode& error) {
@@ -358,7 +360,7 @@ std::uint64_t HttpServer::Connection::body_limit() const {
 
 bool HttpServer::Connection::has_room_for_body() {
   const std::uint64_t usual = state_.options().body_limit;
-  const auto length = parser_->content_length();  // none: it comes in chunks
+  const auto length = parser_->content_length();  // none: chunked
   if (body_limit() <= usual || (length && *length <= usual)) return true;
   has_room_ = state_.take_room(peer_, is_trusted_);
   if (has_room_) return true;
@@ -426,7 +428,7 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
 }
 
 bool HttpServer::Connection::is_request_line_too_long() const {
-  // The parser knows the target only once it has seen the end of the request line.
+  // The parser knows the target only after it has seen the end of the request line.
   const auto target = parser_->get().target();
   return target.empty() || target.size() > state_.options().target_limit;
 }
@@ -457,9 +459,9 @@ void HttpServer::Connection::handle(http::request<http::string_body>& message) {
   if (request_.target.size() > state_.options().target_limit) {
     return send(problem_response(target_too_long()));
   }
-  // The pair lets go of the connection before the state that the connection refers to.
+  // The pair releases the connection before the state that the connection refers to.
   auto held = std::pair(state_.shared_from_this(), shared_from_this());
-  // This is the boundary of a request: nothing that goes wrong in one may end the server.
+  // Request boundary: an error in one request must not end the server.
   try {
     state_.handler()(request_, [held = std::move(held)](HttpResponse response) {
       Connection& connection = *held.second;
@@ -486,7 +488,7 @@ void HttpServer::Connection::watch_for_disconnection() {
 void HttpServer::Connection::on_readable_while_watching() {
   char byte = 0;
   const auto received = ::recv(socket_.native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
-  if (received > 0) return;  // the next request, behind which nothing can be seen
+  if (received > 0) return;  // the next request, which hides everything after it
   if (received < 0) {
     if (errno == EAGAIN || errno == EINTR) return watch_for_disconnection();
     return request_.disconnection->happen();
@@ -501,7 +503,7 @@ void HttpServer::Connection::stop_watching() {
   if (!is_watching_) return;
   is_watching_ = false;
   half_closed_timer_.cancel();
-  ErrorCode ignored;  // then there is nothing to cancel
+  ErrorCode ignored;  // on error, there is nothing to cancel
   socket_.cancel(ignored);
 }
 
@@ -516,7 +518,7 @@ void HttpServer::Connection::send(HttpResponse response) {
   is_answered_ = true;
   stop_watching();
   tell(response);
-  request_.body = {};  // it may be long, and the next request may be long in coming
+  request_.body = {};  // it may be long, and the next request may take a while to arrive
   leave_room();
   keep_alive_ = keep_alive_ && !state_.is_draining();
   head_.clear();
@@ -526,7 +528,7 @@ void HttpServer::Connection::send(HttpResponse response) {
   write();
 }
 
-// Most responses fit into what the system keeps for the socket, and are gone at once.
+// Most responses fit into the socket's send buffer and are written immediately.
 void HttpServer::Connection::write() {
   using Parts = std::array<net::const_buffer, 2>;
   const Parts parts{net::buffer(head_), body_ == nullptr ? net::const_buffer()
@@ -545,15 +547,15 @@ void HttpServer::Connection::write() {
 
 void HttpServer::Connection::on_written(const ErrorCode& error) {
   body_ = nullptr;
-  if (error) return;  // the client has gone
+  if (error) return;  // the client has disconnected
   if (!keep_alive_) return close_gently();
   if (buffer_.size() == 0) return read();
-  // However many requests a client sends at once, the stack stays as it is.
+  // Posted, so that the stack does not grow however many requests a client sends.
   net::post(socket_.get_executor(), [self = shared_from_this()] { self->read(); });
 }
 
 void HttpServer::Connection::close_gently() {
-  ErrorCode ignored;  // it may have gone already
+  ErrorCode ignored;  // may be closed already
   socket_.shutdown(Socket::shutdown_send, ignored);
   allow(kLingerTime);
   discard_input();
@@ -648,7 +650,7 @@ void HttpServer::State::on_accepted(const ErrorCode& error, Socket socket) {
     begin_rounds();
     return accept();
   }
-  // Most likely there are no more file descriptors: trying again at once would only burn time.
+  // Most likely the file descriptors are exhausted: retrying immediately would only waste time.
   warn_of_refusal(error);
   accept_timer_.expires_after(kAcceptPause);
   accept_timer_.async_wait([this](const ErrorCode& cancelled) {
@@ -656,7 +658,7 @@ void HttpServer::State::on_accepted(const ErrorCode& error, Socket socket) {
   });
 }
 
-/// Once a second at most, however often it is tried again.
+/// Logs at most once a second, however often it is retried.
 void HttpServer::State::warn_of_refusal(const ErrorCode& error) {
   const auto now = Clock::now();
   if (now < next_warning_) return;
@@ -693,7 +695,7 @@ std::vector<std::shared_ptr<HttpServer::Connection>> HttpServer::State::alive_co
 void HttpServer::State::admit(Socket socket) {
   ErrorCode error;
   const auto remote = socket.remote_endpoint(error);
-  if (error) return;  // it has gone already
+  if (error) return;  // closed already
   const ClientAddress peer = client_address(remote.address());
   const auto [count, count_of_peer] = [this, &peer] {
     const std::lock_guard lock(mutex_);
@@ -705,7 +707,7 @@ void HttpServer::State::admit(Socket socket) {
   if (is_full || is_greedy) ++refusals_;
   if (count >= options_.max_connections + kMaxRefusals) return;
   if (is_greedy && count_of_peer >= options_.max_connections_per_address + kMaxRefusals) return;
-  socket.set_option(tcp::no_delay(true), error);  // only a matter of speed
+  socket.set_option(tcp::no_delay(true), error);  // only for speed; failure is harmless
   socket.non_blocking(true, error);
   if (error) return;
   auto connection = std::make_shared<Connection>(*this, std::move(socket), peer);

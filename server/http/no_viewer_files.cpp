@@ -1,4 +1,4 @@
-// In the place of the source that web/embed.mjs makes, for a build without the viewer.
+// Replaces the source that web/embed.mjs generates, in builds without the viewer.
 #include "server/http/viewer_files.h"
 
 namespace trapeze {

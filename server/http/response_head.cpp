@@ -22,7 +22,7 @@ std::string http_date(std::time_t time) {
   return {text.data(), length};
 }
 
-/// Those that all responses have; made once a second.
+/// Fields of all responses; made once a second.
 const std::string& usual_fields() {
   thread_local std::time_t made = -1;
   thread_local std::string fields;

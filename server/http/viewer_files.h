@@ -1,4 +1,4 @@
-// The viewer as it was built into the program, with what its files are compressed to.
+// The viewer files built into the binary, with their compressed forms.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -11,11 +11,11 @@ namespace trapeze {
 struct BuiltInFile {
   std::string_view path;  // "/index.html"
   std::string_view bytes;
-  std::string_view gzip;  // empty where it would not be smaller, as the next
+  std::string_view gzip;  // empty if it would not be smaller; the same below
   std::string_view brotli;
 };
 
-/// None if the viewer was left out of the build (TRAPEZE_VIEWER).
+/// Empty if the viewer was left out of the build (TRAPEZE_VIEWER).
 std::span<const BuiltInFile> viewer_files();
 
 }  // namespace trapeze

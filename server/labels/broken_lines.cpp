@@ -7,7 +7,7 @@
 namespace trapeze {
 namespace {
 
-/// A part of the text that stays whole, and whether a space stands before it.
+/// A part of the text that is not broken, and whether a space precedes it.
 struct Chunk {
   std::string_view text;
   bool follows_space = false;
@@ -21,7 +21,7 @@ std::size_t bytes_of_character(unsigned char first) {
   return first >= 0xc0 ? 2 : 1;
 }
 
-/// Ideographs, kana and Hangul syllables, between which lines may break.
+/// Ideographs, kana and Hangul syllables: lines may be broken between them.
 bool is_ideograph(std::string_view character) {
   const std::u32string one = characters_of_line(character, 1);
   if (one.empty()) return false;
@@ -57,7 +57,7 @@ std::vector<Chunk> chunks_of(std::string_view text) {
   return chunks;
 }
 
-/// Numbers of the chunks after which lines end, if none is to be wider.
+/// The indexes of the chunks after which lines end, with no line wider than `most`.
 std::vector<std::size_t> ends_of_lines(const std::vector<Chunk>& chunks, double most,
                                        double space) {
   std::vector<std::size_t> ends;
@@ -88,7 +88,7 @@ BrokenLines broken_lines(std::string_view text, double most, const Fonts& fonts)
   }
   const double space = fonts.extent_of(" ").width;
   std::vector<std::size_t> ends = ends_of_lines(chunks, most, space);
-  // As narrow as the same number of lines can be.
+  // The smallest width that gives the same number of lines.
   double narrow = std::max(widest, whole.width / static_cast<double>(ends.size()));
   double wide = std::max(most, widest);
   for (int i = 0; i < 8; ++i) {

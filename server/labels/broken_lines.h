@@ -11,13 +11,13 @@ namespace trapeze {
 
 struct BrokenLines {
   std::vector<std::string> lines;
-  double width = 0;        // of the widest, in ems
+  double width = 0;        // of the widest line, in ems
   double line_height = 0;  // in ems
 };
 
-/// Lines of at most `most` ems where that is possible: text may be broken at spaces, after hyphens,
-/// slashes and commas, and between Chinese, Japanese and Korean characters. As few lines as that
-/// takes, and these as equally wide as they can be. Thread-safe.
+/// Breaks text into lines of at most `most` ems where possible: at spaces, after hyphens, slashes
+/// and commas, and between Chinese, Japanese and Korean characters. Uses as few lines as possible,
+/// and makes these as equal in width as possible. Thread-safe.
 BrokenLines broken_lines(std::string_view text, double most, const Fonts& fonts);
 
 }  // namespace trapeze

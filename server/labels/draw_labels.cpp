@@ -9,7 +9,7 @@
 namespace trapeze {
 namespace {
 
-/// Numbers of the colours of a picture, to which those of labels are added.
+/// The colour numbers of a picture, extended by those of its labels.
 class ColourBook {
  public:
   explicit ColourBook(RunPicture& picture) : picture_(picture) {
@@ -38,7 +38,7 @@ class ColourBook {
   std::unordered_map<std::uint32_t, std::uint32_t> numbers_;
 };
 
-/// The row of a label over a row of a picture.
+/// Draws the row of a label over a row of a picture.
 void draw_row(const DrawnLabel& label, int row, Picture& pixels) {
   const TextMask& mask = label.image->mask();
   const LabelImage::Look& look = label.image->look();

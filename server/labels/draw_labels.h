@@ -1,4 +1,4 @@
-// Puts labels on a picture.
+// Draws labels into a picture.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace trapeze {
 
-/// One after the other: the halo of each, and its letters over it. Rows without labels stay as they
-/// are. Thread-safe.
+/// Draws them one after the other, each with its halo below its letters. Rows without labels are
+/// not changed. Thread-safe.
 void draw_labels(std::span<const DrawnLabel> labels, RunPicture& picture);
 
 }  // namespace trapeze

@@ -19,18 +19,18 @@
 namespace trapeze {
 namespace {
 
-// Around each label, so that two of them do not touch, also where both are moved to whole pixels.
+// Around each label, so that two labels do not touch even after both are moved to whole pixels.
 constexpr double kGap = 1;  // pixels
-// How much more room than it counts with a label may take, as letters reach beyond their lines.
+// How much more room than its nominal size a label may need, as letters reach beyond their lines.
 constexpr double kSlackPixels = 3;
 constexpr double kSlackEms = 0.35;
-constexpr double kMostPixels = 1024;  // of a label, from west to east and from north to south
+constexpr double kMostPixels = 1024;  // of a label, in width and in height
 constexpr double kLeastWidth = 1;     // ems, of lines
-// How far a boundary that is simplified may be from where it is, by tolerance: the next larger one
-// of the ladder of tolerances may be taken, and the edge is a pixel wide.
+// How far a simplified boundary may be from the true one, per tolerance: the next larger tolerance
+// of the ladder may be used, and the edge is a pixel wide.
 constexpr double kToleranceReach = 1.5;
 constexpr double kEdgePixels = 0.5;
-// What a feature costs to be placed, with its anchor and the width of its text.
+// The cost of placing a feature, with its anchor and the width of its text.
 constexpr std::uint64_t kSidesPerFeature = 60;
 constexpr std::size_t kImageBudget = std::size_t{48} << 20;
 
@@ -40,7 +40,7 @@ double slack_of(std::span<const LabelledLayer> layers) {
   return kSlackPixels + kSlackEms * size;
 }
 
-/// How long the lines of a text may be, in ems.
+/// The maximum length of lines of a text, in ems.
 double longest_line(const LabelStyle& style) {
   return std::max(style.max_width / style.size, kLeastWidth);
 }
@@ -49,7 +49,7 @@ double pixels_per_cell_at_zoom(double zoom) {
   return std::exp2(zoom) * kTilePixels / static_cast<double>(kGridSize);
 }
 
-/// Of pixels that are not square, the larger ones count: there labels are nearest to each other.
+/// If pixels are not square, the longer side counts: labels are closest to each other along it.
 double pixels_per_cell_of(const LabelledView& wanted) {
   const View& view = wanted.view;
   return 1 / (std::max(view.cells_per_pixel, view.cells_per_row()) * wanted.scale);
@@ -63,7 +63,7 @@ PlaneBox box_of(const View& view) {
           top + view.height * view.cells_per_row()};
 }
 
-/// By how many cells the world has to be moved so that it is seen in the box, or what lies near it.
+/// By how many cells to move the world so that copies of it are visible in or near the box.
 std::vector<double> shifts_of(const View& view, const PlaneBox& box, double reach) {
   if (view.projection == Projection::plane) return {0};
   const auto world = static_cast<double>(kGridSize);
@@ -79,10 +79,10 @@ std::vector<double> shifts_of(const View& view, const PlaneBox& box, double reac
 
 }  // namespace
 
-// A placement with what its labels are of.
+// A placement, with the sources of its labels.
 struct LabelBook::Placed {
   struct Source {
-    std::uint32_t layer = 0;  // among those that are labelled
+    std::uint32_t layer = 0;  // among the labelled layers
     std::uint32_t row = 0;
     Room room;
   };
@@ -97,14 +97,14 @@ struct LabelBook::Entry {
   std::atomic<bool> is_made = false;
 };
 
-// Makes the candidates of one picture's layers.
+// Creates the candidates for the layers of one picture.
 class LabelBook::Placing {
  public:
   Placing(LabelBook& book, const LabelledView& wanted)
       : book_(book), wanted_(wanted), projection_(wanted.view.projection) {}
 
   std::shared_ptr<const Placed> place() {
-    // What lies on top is labelled first.
+    // Layers on top are labelled first.
     for (std::size_t i = wanted_.layers.size(); i-- > 0;) {
       add_layer(static_cast<std::uint32_t>(i), wanted_.layers[i]);
     }
@@ -170,7 +170,7 @@ class LabelBook::Placing {
     return std::isnan(number) ? last : number;
   }
 
-  /// Many features say the same.
+  /// Many features have the same text.
   const Room& extent_of(const LabelledLayer& layer, const std::string& text) {
     const auto [found, is_new] = extents_.try_emplace(text);
     if (is_new) {
@@ -192,12 +192,13 @@ class LabelBook::Placing {
     const double half_height = room.height / 2 + style.halo_width;
     candidate.half_width = static_cast<float>(half_width + kGap);
     candidate.half_height = static_cast<float>(half_height + kGap);
-    double stretch = 1;  // cells of the grid to one of the plane, from north to south
+    double stretch = 1;  // cells of the grid per cell of the plane, from north to south
     if (projection_ == Projection::plate_carree) {
       stretch = mercator_stretch(candidate.y);
       candidate.y = plate_carree_from_mercator(candidate.y);
     }
-    // The ellipse around the anchor holds the corners of what must not reach out.
+    // The ellipse around the anchor contains the corners of the part that must stay inside the
+    // polygon.
     const double inner_width = std::max(half_width - style.overhang, 0.0);
     const double inner_height = std::max(half_height - style.overhang, 0.0);
     const double depth = anchor.depth;
@@ -214,7 +215,7 @@ class LabelBook::Placing {
   LabelBook& book_;
   const LabelledView& wanted_;
   const Projection projection_;
-  std::unordered_map<std::string, Room> extents_;  // by text, of the layer at hand
+  std::unordered_map<std::string, Room> extents_;  // by text, for the current layer
   std::vector<LabelCandidate> candidates_;
   std::vector<Placed::Source> sources_;
 };
@@ -235,7 +236,7 @@ std::shared_ptr<LabelBook::Entry> LabelBook::entry(const std::string& key) {
   return kept_.insert(key, std::make_shared<Entry>(), key.size());
 }
 
-// It counts with its size from when that is known.
+// The entry counts with its size from the time that it is known.
 void LabelBook::set_size(const std::string& key, std::shared_ptr<Entry> entry, std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   kept_.erase(key);

@@ -1,11 +1,11 @@
-// Labels that were placed, and how they look: kept so that a picture only looks up what reaches
+// Placed labels and their appearance, cached so that a picture only looks up the labels that reach
 // into it.
 //
-// A placement is of all layers of a picture that are labelled, in all of the world and at all
-// scales; it depends neither on the picture nor on the zooms at which its layers are drawn.
+// A placement covers all labelled layers of a picture, for the whole world and all scales. It
+// depends neither on the picture nor on the zooms at which its layers are drawn.
 //
-// Thread-safety: all methods may be called from any thread; a call for what another thread is
-// making waits for it.
+// Thread-safety: all methods may be called from any thread; a call that needs the result of another
+// thread's work in progress waits for it.
 #pragma once
 
 #include <cstddef>
@@ -29,14 +29,13 @@
 
 namespace trapeze {
 
-/// The fonts that labels may be drawn in.
+/// The fonts available for labels.
 struct FontChoice {
   std::shared_ptr<const Fonts> usual = std::make_shared<const Fonts>();
   std::map<std::string, std::shared_ptr<const Fonts>> named = {};
 };
 
-/// A label as it looks at one scale. What it looks like is known by its identity before it is
-/// drawn.
+/// The appearance of a label at one scale. Its identity is known before it is drawn.
 ///
 /// Thread-safety: any number of threads may read.
 class LabelImage {
@@ -46,9 +45,9 @@ class LabelImage {
     int height = 0;
     Rgba letters;
     Rgba halo;
-    std::string identity;  // equal for those that look the same, whoever drew them
+    std::string identity;  // equal for images that look the same, whoever drew them
   };
-  /// `draw` makes the mask, in whatever thread first asks for it.
+  /// `draw` creates the mask, in the thread that needs it first.
   LabelImage(Look look, std::function<TextMask()> draw)
       : look_(std::move(look)), draw_(std::move(draw)) {}
 
@@ -65,8 +64,7 @@ class LabelImage {
   mutable TextMask mask_;
 };
 
-/// Where it lies in a picture: the column and the row of its north-west pixel, which may be
-/// outside.
+/// A label placed in a picture: column and row of its north-west pixel, which may be outside.
 struct DrawnLabel {
   std::shared_ptr<const LabelImage> image;
   int left = 0;
@@ -88,20 +86,20 @@ class LabelBook {
 
   const std::shared_ptr<const Fonts>& usual_fonts() const { return fonts_.usual; }
 
-  /// The labels that reach into the picture, in the order in which they are drawn.
+  /// The labels that reach into the picture, in drawing order.
   std::vector<DrawnLabel> find(const LabelledView& wanted);
 
   /// Whether any label may reach into the picture, or into one of the same place at a larger scale.
   bool is_any_from(const LabelledView& wanted);
 
-  /// What find() costs before it can look anything up, in the units of drawing_cost(): nothing if
-  /// the labels have been placed already.
+  /// The cost of find(), in units of drawing_cost(), apart from the look-up; 0 if the labels have
+  /// already been placed.
   std::uint64_t cost_of(const LabelledView& wanted) const;
 
-  /// Whether find() has nothing to place and nobody to wait for.
+  /// Whether find() neither has to place labels nor to wait for another thread.
   bool has_placed(const LabelledView& wanted) const;
 
-  /// Bytes held, about.
+  /// Approximate memory in bytes.
   std::size_t memory() const;
 
   static constexpr std::size_t kDefaultBudget = std::size_t{192} << 20;
@@ -116,7 +114,7 @@ class LabelBook {
   std::shared_ptr<const LabelAnchors> anchors_of(const ServedLayer& served, LabelParts parts);
   std::shared_ptr<Entry> entry(const std::string& key);
   void set_size(const std::string& key, std::shared_ptr<Entry> entry, std::size_t bytes);
-  /// How large a text is.
+  /// The size of a text.
   struct Room {
     double width = 0;   // pixels, without halo
     double height = 0;  // the same
@@ -128,7 +126,7 @@ class LabelBook {
   const std::string& identity_of(const Fonts& fonts);
 
   const FontChoice fonts_;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   mutable LruMap<std::string, std::shared_ptr<Entry>> kept_;
   LruMap<std::string, std::shared_ptr<const LabelImage>> images_;
   std::map<const Fonts*, std::string> identities_;

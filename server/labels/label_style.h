@@ -18,42 +18,42 @@ namespace trapeze {
 
 /// Lengths are in pixels of a picture of scale 1.
 struct LabelStyle {
-  std::string written;  // the template, as it was asked for
-  LabelTemplate text;   // of the attributes of the layer and the values joined to them
+  std::string written;  // the template, as requested
+  LabelTemplate text;   // with attributes of the layer and joined values
   std::optional<NumberFormat> format;
   std::shared_ptr<const JoinedValues> joined;  // null: none
-  std::string language;                        // empty: none is wanted
-  /// The joined values in that language; null: there are none.
+  std::string language;                        // empty: none requested
+  /// The joined values in that language; null: none.
   std::shared_ptr<const JoinedValues> translated;
-  std::string font;  // of the configuration; empty: the usual ones
+  std::string font;  // as named in the configuration; empty: the usual fonts
   double size = 12;  // side of the em square
   Rgba colour{0x22, 0x22, 0x22, 255};
   Rgba halo_colour{255, 255, 255, 0xcc};
   double halo_width = 1.5;
-  double max_width = 120;  // beyond which lines are broken
-  /// The attribute, a number, by which those that are greater go first; -1: by area.
+  double max_width = 120;  // longer lines are broken
+  /// The numeric attribute by which features are ranked, greater values first; -1: by area.
   int priority = -1;
-  double min_size = 0;     // of the polygon: the side of a square as large as it
-  double overhang = 8;     // by how much a label may reach out of its polygon
+  double min_size = 0;     // minimum size of the polygon: side of a square of its area
+  double overhang = 8;     // how far a label may reach out of its polygon
   bool repeats = true;     // false: equal labels are shown once
-  bool all_parts = false;  // false: one label a feature
+  bool all_parts = false;  // false: one label per feature
 
-  /// What the label of the feature in that row says: in the language if the fonts can write that.
+  /// The text of the label for the feature in that row: in the language, if the fonts can write it.
   std::string text_of(const FeatureTable& features, std::uint32_t row, const Fonts& fonts) const;
 
   /// Equal for styles that show the same labels in the same places of one layer.
   std::string placement_key() const;
-  /// Equal for those that also look the same.
+  /// Equal for styles whose labels also look the same.
   std::string key() const;
 };
 
-/// A layer of a picture that is labelled, whether it is drawn at its zoom or not.
+/// A labelled layer of a picture, whether or not it is drawn at its zoom.
 struct LabelledLayer {
   std::size_t layer = 0;  // position in the dataset
   std::shared_ptr<const LabelStyle> style;
-  Classing classing;     // which features are drawn
+  Classing classing;     // determines which features are drawn
   double tolerance = 0;  // pixels
-  double min_zoom = 0;   // from which on it is drawn
+  double min_zoom = 0;   // from this zoom on it is drawn
   bool is_drawn = true;  // at the zoom of the picture
 };
 

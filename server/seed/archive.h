@@ -1,5 +1,5 @@
-// Archives of tiles, as they are written: one tile after another, by zoom, and within a zoom along
-// the curve.
+// Writing archives of tiles: tile by tile, in order of zoom, and within a zoom along the Hilbert
+// curve.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace trapeze {
 
-/// What an archive says of itself.
+/// The metadata of an archive.
 struct ArchiveDescription {
   std::string name;
   std::string description;
@@ -24,13 +24,13 @@ struct ArchiveDescription {
   GeographicBounds bounds = kWorldBounds;
   TileFormat format = TileFormat::png;
   int scale = 1;
-  std::string layers;  // with commas between them
+  std::string layers;  // comma-separated
   std::string style;   // as a query
 };
 
 enum class ArchiveKind : std::uint8_t { pmtiles, mbtiles, folder };
 
-/// The ends of names; a folder is what has neither.
+/// Determined by the file name extension; names without one of the two mean a folder.
 ArchiveKind kind_of_archive(const std::string& path);
 
 /// Upper bounds.
@@ -40,7 +40,7 @@ struct ArchiveSize {
   std::uint64_t fingerprints = 0;
 };
 
-/// Tiles of one content.
+/// Tiles with the same content.
 struct ArchiveTiles {
   int zoom = 0;
   PlaceRange places;
@@ -48,14 +48,15 @@ struct ArchiveTiles {
   std::string_view bytes;
 };
 
-/// Nothing has the name of the archive until it is finished. All methods throw std::runtime_error
-/// that names the archive and says why it cannot be written. One thread at a time.
+/// Nothing exists under the archive's name until it is finished. All methods throw
+/// std::runtime_error that names the archive and says why it cannot be written. One thread at a
+/// time.
 class ArchiveWriter {
  public:
   virtual ~ArchiveWriter() = default;
 
   virtual void add(const ArchiveTiles& tiles) = 0;
-  /// Of a content that was added; equal ones may come again.
+  /// The fingerprint of a content that was added; the same one may be added again.
   virtual void add_fingerprint(const Digest& fingerprint, const Digest& content);
   virtual void finish() = 0;
 };

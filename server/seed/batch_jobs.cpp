@@ -11,7 +11,7 @@
 namespace trapeze {
 namespace {
 
-// Braces of shells and of YAML are doubled, as fmt wants it.
+// Braces of shell and YAML are doubled for fmt.
 
 constexpr const char* kKubernetes =
     R"(# Pre-renders tiles on Kubernetes in {parts} parts and joins them into an archive:

@@ -1,5 +1,5 @@
-// The jobs that seed an archive in parts on the batch systems that people have: an Indexed Job of
-// Kubernetes, an array of Slurm. Both run the same commands.
+// The jobs that seed an archive in parts on batch systems: an Indexed Job on Kubernetes, a job
+// array on Slurm. Both run the same commands.
 #pragma once
 
 #include <span>
@@ -18,28 +18,27 @@ inline constexpr NameTable<BatchSystem, 2> kBatchSystemNames({
     {"slurm", BatchSystem::slurm},
 });
 
-/// As many as a Job of Kubernetes or an array of Slurm takes where nobody has set it otherwise, or
-/// fewer.
+/// Within the default limits of Kubernetes Jobs and Slurm job arrays.
 constexpr int kMostParts = 1000;
 
-/// What is seeded, as `trapeze seed` is told.
+/// What to seed, as given to `trapeze seed`.
 struct BatchSeeding {
-  std::vector<std::string> arguments;  // but for --output, --part, --sparse, and what asks for jobs
-  std::string output;                  // the archive; on Kubernetes its name on the volume
+  std::vector<std::string> arguments;  // except --output, --part, --sparse and job options
+  std::string output;                  // the archive; on Kubernetes, its name on the volume
   int parts = 1;                       // 1 to kMostParts
-  bool is_sparse = false;              // --sparse, which is for who joins
+  bool is_sparse = false;              // --sparse, which applies to joining
 };
 
-/// The words of a command line but for these options, which all take a value: "--name value" and
-/// "--name=value".
+/// The words of a command line without these options, each of which takes a value: "--name value"
+/// or "--name=value".
 std::vector<std::string> without_options(std::span<const std::string> words,
                                          std::span<const std::string_view> options);
 
-/// The word as a shell reads it back: in quotes where it has to be.
+/// The word as a shell argument: quoted if necessary.
 std::string shell_word(const std::string& word);
 
-/// A claim of a volume, the Job that seeds the parts, and the suspended Job that joins them, in
-/// YAML; a script for sbatch. No argument may hold a line feed.
+/// For Kubernetes, a volume claim, the Job that seeds the parts, and the suspended Job that joins
+/// them, as YAML; for Slurm, a script for sbatch. No argument may contain a line feed.
 std::string batch_jobs(BatchSystem system, const BatchSeeding& seeding);
 
 }  // namespace trapeze

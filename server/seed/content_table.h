@@ -1,4 +1,4 @@
-// The contents of an archive by their digests, so that each is stored once.
+// The contents of an archive by digest, so that each is stored only once.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@ class ContentTable {
  public:
   struct Content {
     Digest digest;
-    std::uint64_t place = 0;  // for the archive to say where it is
+    std::uint64_t place = 0;  // set by the archive: where the content is
     std::uint32_t length = 0;
     std::uint32_t is_there = 0;
   };
@@ -25,11 +25,11 @@ class ContentTable {
     bool is_new = false;
   };
 
-  /// For up to `most` contents; beside `path`, see ScratchFile.
+  /// For up to `most` contents; the file is next to `path`, see ScratchFile.
   ContentTable(const std::string& path, std::uint64_t most)
       : slots_(path, std::bit_ceil(2 * most + 1)) {}
 
-  /// The content of that digest, which is added if it is not there.
+  /// Finds the content with that digest; adds it if it is missing.
   Found find_or_add(const Digest& digest) {
     const std::size_t mask = slots_.items().size() - 1;
     std::size_t i = digest.low & mask;

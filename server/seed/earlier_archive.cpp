@@ -23,14 +23,14 @@ std::uint64_t word_at(std::string_view bytes, std::size_t offset) {
   return word;
 }
 
-/// Those bytes; nothing if there are not so many.
+/// The bytes at that position; nothing if they reach beyond the end.
 std::optional<std::string_view> part_of(std::string_view bytes, std::uint64_t offset,
                                         std::uint64_t length) {
   if (offset > bytes.size() || length > bytes.size() - offset) return std::nullopt;
   return bytes.substr(offset, length);
 }
 
-/// Empty if there are none; nothing if the archive is something else.
+/// Empty if there are none; nothing if this is not an archive of ours.
 std::optional<std::string_view> stored_fingerprints(std::string_view bytes) {
   if (bytes.size() < kHeaderBytes || !bytes.starts_with("PMTiles\x03")) return std::nullopt;
   const auto compressed = part_of(bytes, word_at(bytes, kPlaceOfMetadata),

@@ -1,4 +1,4 @@
-// An archive that was seeded before, for what has not changed since.
+// An archive seeded earlier, from which unchanged tiles are reused.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@ namespace trapeze {
 /// Thread-safety: immutable, any number of threads may read.
 class EarlierArchive {
  public:
-  /// Throws std::runtime_error that names the path if it is no archive in PMTiles that
-  /// `trapeze seed` has written.
+  /// Throws std::runtime_error that names the path if it is not a PMTiles archive written by
+  /// `trapeze seed`.
   explicit EarlierArchive(const std::string& path);
 
-  /// The bytes of a tile of that fingerprint, if there is one.
+  /// The bytes of a tile with that fingerprint, if there is one.
   std::optional<std::string> find(const Digest& fingerprint) const;
 
  private:

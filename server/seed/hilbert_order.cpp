@@ -5,7 +5,7 @@
 namespace trapeze {
 namespace {
 
-/// Turns the square of that side so that the curve through it begins where the one before ended.
+/// Turns the square with that side so that its curve begins where the previous one ended.
 void turn(std::uint32_t side, std::uint32_t right, std::uint32_t lower, std::uint32_t& x,
           std::uint32_t& y) {
   if (lower != 0) return;

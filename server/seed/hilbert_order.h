@@ -1,7 +1,7 @@
-// The order of tiles in an archive: zoom by zoom, and within a zoom along a Hilbert curve, as
-// PMTiles 3 numbers them. All tiles of a zoom below a tile have successive numbers.
+// The order of tiles in an archive: by zoom, and within a zoom along a Hilbert curve, as PMTiles 3
+// numbers them. All tiles of a zoom below a given tile have consecutive numbers.
 //
-// Any thread.
+// Thread-safety: any thread.
 #pragma once
 
 #include <array>
@@ -11,23 +11,23 @@
 
 namespace trapeze {
 
-/// The number of a tile among those of its zoom, from 0 on.
+/// The number of a tile within its zoom, from 0.
 std::uint64_t place_on_curve(const TileId& tile);
 /// The tile with that number.
 TileId tile_at_place(int zoom, std::uint64_t place);
 
-/// The number of the first tile of a zoom among those of all zooms.
+/// The number of the first tile of a zoom, counted over all zooms.
 std::uint64_t first_id_of_zoom(int zoom);
 
 /// The four tiles of the next zoom, in order.
 std::array<TileId, 4> children_in_order(const TileId& tile);
 
-/// Tiles that follow each other within a zoom.
+/// Consecutive tiles of a zoom.
 struct PlaceRange {
   std::uint64_t first = 0;
   std::uint64_t count = 1;
 };
-/// Those of a zoom that lie below the tile; `zoom` is not less than its own.
+/// The tiles of a zoom below the tile; `zoom` is at least that of the tile.
 PlaceRange places_below(const TileId& tile, int zoom);
 
 }  // namespace trapeze

@@ -55,7 +55,7 @@ SeedBlockBuilder JobPainter::paint(std::span<const SeedUnit> units) {
   return std::move(block_);
 }
 
-// From the top, as far as that has not been done for the unit before.
+// From the top, without the tiles already examined for the previous unit.
 void JobPainter::approach(const TileId& tile) {
   for (int zoom = 0; zoom <= tile.z; ++zoom) {
     const TileId above{zoom, tile.x >> (tile.z - zoom), tile.y >> (tile.z - zoom)};
@@ -84,7 +84,7 @@ void JobPainter::visit(const TileId& tile) {
   }
 }
 
-// Of those below a tile that is known with all of them, only some may be wanted.
+// All tiles below this one are known, but possibly not all are wanted.
 void JobPainter::add_all_below(const TileId& tile) {
   const ZoomRange zooms = plan_.zooms();
   const auto add = [this](const TileId& each, int zoom) {
@@ -144,7 +144,7 @@ void JobPainter::paint_tile(const TileId& tile) {
   ++(of_one_colour_.contains(*content) ? block_.figures.alone : block_.figures.drawn);
 }
 
-// As the server does it, which paints large tiles in bands.
+// As in the server, large tiles are painted in bands.
 JobPainter::Painted JobPainter::paint_whole(
     const TilePlan& plan, std::string& fingerprint,
     const std::function<bool(const std::string&)>& is_wanted) {

@@ -1,6 +1,6 @@
-// Does one job of a seeding: tells which of its tiles are known, and draws the others.
+// Runs one job of a seeding: finds the tiles that are known without drawing, and draws the others.
 //
-// Thread-safety: one thread at a time; every thread has its own.
+// Thread-safety: one thread at a time; every thread has its own painter.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ namespace trapeze {
 
 class JobPainter {
  public:
-  /// The bytes of a tile of that fingerprint, where they are known from before.
+  /// The bytes of a tile with that fingerprint, if they are known from an earlier archive.
   using FindKnown = std::function<std::optional<std::string>(const Digest& fingerprint)>;
 
   /// `plan` must outlive it.
@@ -32,10 +32,10 @@ class JobPainter {
              const std::shared_ptr<FeatureClassCache>& classes,
              const std::shared_ptr<LabelBook>& labels, FindKnown find_known = {});
 
-  /// The tiles of the units. Throws what drawing throws.
+  /// The tiles of the units. Throws the errors of drawing.
   SeedBlockBuilder paint(std::span<const SeedUnit> units);
 
-  /// How many tiles were not drawn because their bytes were known from before.
+  /// How many tiles were not drawn because their bytes were known from an earlier archive.
   std::uint64_t reused() const { return reused_; }
 
  private:
@@ -59,11 +59,11 @@ class JobPainter {
   FindKnown find_known_;
   std::uint64_t reused_ = 0;
   std::vector<std::optional<TileId>> approached_;  // by zoom
-  std::map<TileLook, std::string> looks_;          // what tiles of that look are
-  std::string empty_;                              // a tile in which nothing is seen
+  std::map<TileLook, std::string> looks_;          // the tile of each look
+  std::string empty_;                              // a tile that shows nothing
   SeedBlockBuilder block_;
-  std::map<TileLook, std::uint64_t> contents_;  // of the block, by look
-  std::set<std::uint64_t> of_one_colour_;       // of its contents
+  std::map<TileLook, std::uint64_t> contents_;  // content numbers of the block, by look
+  std::set<std::uint64_t> of_one_colour_;       // contents of the block
 };
 
 }  // namespace trapeze

@@ -15,7 +15,7 @@ namespace {
 ArchiveSize size_of(const SeedLogs& logs) {
   ArchiveSize size;
   const ZoomRange zooms = logs.archive().zooms;
-  constexpr std::uint64_t kMostRun = 0xffffffff;  // of PMTiles: a longer run has several entries
+  constexpr std::uint64_t kMostRun = 0xffffffff;  // in PMTiles; a longer run needs several entries
   for (const SeedBlock& block : logs.blocks()) {
     size.contents += block.contents().size();
     size.fingerprints += block.fingerprints().size();
@@ -28,7 +28,7 @@ ArchiveSize size_of(const SeedLogs& logs) {
   return size;
 }
 
-/// Puts tiles together that follow each other and are equal.
+/// Combines consecutive equal tiles.
 class Runs {
  public:
   explicit Runs(ArchiveWriter& writer) : writer_(writer) {}
@@ -74,7 +74,7 @@ void check_place_of_archive(const std::string& path) {
   }
 }
 
-// A log has the fingerprints of what was left out, too.
+// A log also has the fingerprints of tiles that are left out.
 void join_into_archive(const SeedLogs& logs, const std::string& path, const JoinOptions& options) {
   const bool is_sparse = options.is_sparse || kind_of_archive(path) == ArchiveKind::folder;
   const auto writer = write_archive(path, logs.archive(), size_of(logs));

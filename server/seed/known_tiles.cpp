@@ -12,13 +12,13 @@
 namespace trapeze {
 namespace {
 
-/// So many trapezoids below a tile hardly ever leave it of one colour.
+/// With so many trapezoids below it, a tile is hardly ever of one colour.
 constexpr std::uint64_t kMostTrapezoids = 4096;
 
-/// Dust is gathered from that far away, in pixels, and small polygons are drawn as large as one.
+/// How far away dust is collected, and how far enlarged small polygons reach, in pixels.
 constexpr double kReachOfDust = 3;
 
-/// Places are rounded to cells, here and where a tile is drawn.
+/// Places are rounded to cells, here and when a tile is drawn.
 constexpr double kCellsForRounding = 2;
 
 Box widened(const TileId& tile, double cells) {
@@ -31,7 +31,8 @@ Box widened(const TileId& tile, double cells) {
           cell(tile.origin_y() + tile.side() + margin)};
 }
 
-/// The length of boundary between two heights, as it crosses columns and rows of tiles.
+/// The length of the boundary between two heights, measured by the columns and rows of tiles it
+/// crosses.
 double crossing_length(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box) {
   const double top = std::max(mesh.vertices[trapezoid.top].y, box.min_y);
   const double bottom = std::min(mesh.vertices[trapezoid.bottom].y, box.max_y);
@@ -50,7 +51,7 @@ double crossing_length(const MeshView& mesh, const MeshTrapezoid& trapezoid, con
   return length;
 }
 
-/// Whether there is anything but polygons, drawn as that zoom's selection says.
+/// Whether anything other than polygons is drawn with that zoom's selection.
 bool has_dust_or_edges(const Layer& layer, const LevelSpan& span, const Layer::Selection& selection,
                        const LayerPaint& paint) {
   const std::span<const Lifespan> lifespans = layer.lifespans();
@@ -92,7 +93,7 @@ KnownTiles::KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> 
   }
 }
 
-/// The layer, or each of its parts.
+/// Adds the layer, or each of its parts.
 void KnownTiles::add_drawn(const TilePlan& plan, const LayerPaint& paint) {
   const ServedLayer& served = plan.dataset->layers_on_all_grids()[paint.layer];
   Drawn drawn;
@@ -115,10 +116,10 @@ void KnownTiles::add_drawn(const TilePlan& plan, const LayerPaint& paint) {
   }
 }
 
-/// False if a part cannot be opened: whoever draws will tell.
+/// False if a part cannot be opened: drawing it will report the error.
 bool KnownTiles::open(Drawn& drawn, const LayerPaint& paint) {
   if (drawn.opened != nullptr) return true;
-  const Layer* layer = drawn.part->layer().get();  // which the part keeps
+  const Layer* layer = drawn.part->layer().get();  // kept alive by the part
   if (layer == nullptr) return false;
   const Classing& classing = paint.style.classing;
   if (!classing.is_plain()) {
@@ -133,7 +134,7 @@ int KnownTiles::first_zoom(const TileId& tile) const {
   return std::max(tile.z, plan_.zooms().first);
 }
 
-// Whatever any of the zooms looks at. Pixels are largest at the first of them.
+// Covers what any of the zooms selects. Pixels are largest at the first zoom.
 LevelSpanSelection KnownTiles::selection_of(const Drawn& drawn, const TileId& tile) const {
   LevelSpanSelection selection;
   double reach = 0;
@@ -220,7 +221,7 @@ bool KnownTiles::find(Drawn& drawn, const LevelSpanSelection& selection, const T
   for (int zoom = first_zoom(tile); zoom <= plan_.zooms().last && paint == nullptr; ++zoom) {
     paint = drawn.paints[static_cast<std::size_t>(zoom)];
   }
-  if (paint == nullptr) {  // it is drawn at no zoom from here on
+  if (paint == nullptr) {  // not drawn at any zoom from here on
     span = LevelSpan();
     return true;
   }
@@ -230,7 +231,7 @@ bool KnownTiles::find(Drawn& drawn, const LevelSpanSelection& selection, const T
   return span.find(*drawn.opened, classes, selection, kMostTrapezoids);
 }
 
-// At any zoom from its own on.
+// At any zoom from the tile's own on.
 bool KnownTiles::may_have_labels(const TileId& tile) const {
   const TilePlan& plan = plan_.at(first_zoom(tile));
   return !plan.labels.empty() &&
@@ -263,7 +264,7 @@ std::optional<TileLook> KnownTiles::find_look(const Step& step, int zoom) {
     if (seen == Seen::nothing) continue;
     look.push_back(static_cast<char>(drawn_[k].number));
     look.push_back(static_cast<char>(number));
-    // Nothing below it is seen.
+    // Nothing below it is visible.
     if (paint->style.paints[number].fill.a == 255 && paint->style.opacity == 1) break;
   }
   return look;
@@ -290,8 +291,8 @@ KnownTiles::Seen KnownTiles::find_seen(const Drawn& drawn, const LevelSpan& span
   return is_filled ? Seen::one_colour : Seen::nothing;
 }
 
-// Of polygons that have edges in common, or lie over each other, there must be only one: an outline
-// may run between them, and colours may add up.
+// Polygons that share edges or overlap must not be combined: an outline may run between them, and
+// colours may add up. In that case a single polygon is required.
 bool KnownTiles::find_alike(const Drawn& drawn, const LevelSpan& span, const Layer& layer,
                             const LayerPaint& paint, std::uint8_t& number) {
   const bool is_one_needed = paint.style.stroke.width > 0 || !layer.overlaps().empty();

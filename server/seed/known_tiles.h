@@ -1,11 +1,12 @@
-// Which tiles show nothing, or one colour all over, told from the index without drawing: for a tile
-// and all tiles below it at once, down to the last zoom.
+// Finds tiles that show nothing, or one colour all over, from the index without drawing: for a tile
+// and all tiles below it together, down to the last zoom.
 //
-// A layer shows nothing in a tile if nothing comes near it, by as much as outlines, dust and marks
-// of small polygons reach. It shows one colour if trapezoids that are drawn alike cover the tile
-// and its surroundings. Both must hold at the tolerance of each zoom: what is looked at is whatever
-// is alive at any of these, and each zoom is judged by what is alive at its own. What cannot be
-// told is left to be drawn, so that tiles may be drawn that need not be, but never the reverse.
+// A layer shows nothing in a tile if no feature comes near it, by the distance that outlines, dust
+// and marks of small polygons reach. It shows one colour if trapezoids that are drawn the same way
+// cover the tile and its surroundings. Both must hold at the tolerance of each zoom: the search
+// covers everything that is alive at any of these tolerances, and each zoom is judged by what is
+// alive at its own. Undecided tiles are left to be drawn, so a tile may be drawn unnecessarily, but
+// never the reverse.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -25,8 +26,8 @@
 
 namespace trapeze {
 
-/// What tiles of one look show: each layer that is seen and the class that covers it, from the top;
-/// none if there is only the background. Tiles of equal looks have equal bytes, at any zoom.
+/// Describes what a tile shows: each visible layer and the class that covers it, from the top;
+/// empty if there is only the background. Tiles with equal looks have equal bytes, at any zoom.
 using TileLook = std::string;
 
 class KnownTiles {
@@ -35,20 +36,20 @@ class KnownTiles {
   KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes,
              std::shared_ptr<LabelBook> labels);
 
-  /// Looks at a tile of a zoom up to the last. It is of zoom 0, or a child of the tile of the
-  /// zoom before that was looked at last.
+  /// Examines a tile of a zoom up to the last. The tile must have zoom 0, or be a child of the tile
+  /// examined last at the zoom before.
   void look_at(const TileId& tile);
 
-  /// Of the tile that was looked at last: what the tiles of a zoom below it show, `zoom` being one
-  /// of those to be seeded, and not less than its own. Nothing if that is not known.
+  /// For the tile examined last: the look of the tiles of a zoom at or below it. `zoom` must be one
+  /// of those to be seeded. Nothing if it is not known.
   const std::optional<TileLook>& look_at_zoom(int zoom) const {
     return looks_[static_cast<std::size_t>(zoom)];
   }
-  /// Whether that is known of all zooms to be seeded from its own on.
+  /// Whether the look is known for all zooms to be seeded, from the tile's own on.
   bool is_known() const { return is_known_; }
 
-  /// About how many tiles at and below it have to be drawn, by the lengths of boundaries; nothing
-  /// if there are too many trapezoids to tell. In `trapezoids`, how many are put into them.
+  /// Estimates how many tiles at and below it have to be drawn, from the lengths of boundaries, and
+  /// how many trapezoids are drawn into them. Nothing if there are too many trapezoids to estimate.
   struct Estimate {
     double tiles = 0;
     double trapezoids = 0;
@@ -56,17 +57,17 @@ class KnownTiles {
   std::optional<Estimate> estimate() const;
 
  private:
-  // A layer as it is drawn at some of the zooms, or a part of one.
+  // A layer, or a part of one, that is drawn at some of the zooms.
   struct Drawn {
     std::size_t layer = 0;
-    std::size_t number = 0;  // of the layer among those that are drawn, from the top
+    std::size_t number = 0;  // of the layer among the drawn ones, from the top
     Topology topology = Topology::strict;
-    const PreparedPart* part = nullptr;             // null: it is a layer in one piece
-    const Layer* opened = nullptr;                  // null: of a part that nobody has looked at
-    std::shared_ptr<const FeatureClasses> classes;  // null: all are drawn alike
-    std::vector<const LayerPaint*> paints;          // by zoom; null where it is not drawn
+    const PreparedPart* part = nullptr;             // null: a layer in one piece
+    const Layer* opened = nullptr;                  // null: a part that has not been read yet
+    std::shared_ptr<const FeatureClasses> classes;  // null: all features are drawn the same way
+    std::vector<const LayerPaint*> paints;          // by zoom; null if it is not drawn there
   };
-  // What may be met below a tile; nothing is known where there is too much of it.
+  // What may be found below a tile; nothing is recorded if it is too much.
   struct Step {
     TileId tile;
     std::vector<LevelSpan> spans;  // by drawn layer
@@ -85,8 +86,8 @@ class KnownTiles {
   Seen find_seen(const Drawn& drawn, const LevelSpan& span, const TileId& tile, int zoom,
                  std::uint8_t& number);
 
-  /// Replaces ranges_ by the polygons of a zoom, and finds the class of all of them; false if they
-  /// are not drawn alike.
+  /// Replaces ranges_ by the polygons of a zoom, and finds their common class; false if they are
+  /// not all drawn the same way.
   bool find_alike(const Drawn& drawn, const LevelSpan& span, const Layer& layer,
                   const LayerPaint& paint, std::uint8_t& number);
 
@@ -98,7 +99,7 @@ class KnownTiles {
   TileId tile_;
   bool is_known_ = false;
   std::vector<std::optional<TileLook>> looks_;  // by zoom
-  std::vector<TrapezoidRange> ranges_;          // kept for its memory
+  std::vector<TrapezoidRange> ranges_;          // reused to save allocations
 };
 
 }  // namespace trapeze

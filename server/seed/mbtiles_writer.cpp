@@ -14,8 +14,8 @@
 namespace trapeze {
 namespace {
 
-// The file is beside the archive until it is whole, so no journal is needed. The number is "MPBX",
-// by which file(1) knows MBTiles.
+// The file has a temporary name until it is complete, so no journal is needed. The number is
+// "MPBX", by which file(1) recognises MBTiles.
 constexpr const char* kBegin =
     "PRAGMA page_size = 4096;"
     "PRAGMA journal_mode = OFF;"

@@ -1,5 +1,5 @@
-// MBTiles, version 1.3: a database of SQLite. Contents are in a table of their own, each once, and
-// the view `tiles` puts them together with their places.
+// MBTiles, version 1.3: an SQLite database. Contents are in a table of their own, without
+// duplicates, and the view `tiles` joins them with their places.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::uint64_t kBeginOfTiles = 16'384;  // what readers ask for first ends here
+constexpr std::uint64_t kBeginOfTiles = 16'384;  // the first request of readers ends here
 constexpr std::uint64_t kHeaderBytes = 127;
 constexpr std::uint64_t kMostOfRoot = kBeginOfTiles - kHeaderBytes;
 constexpr std::size_t kLeastLeaf = 4096;  // entries
@@ -33,7 +33,7 @@ void append_little_endian(Integer value, std::string& bytes) {
   }
 }
 
-/// A directory as the specification has it: column by column, then compressed.
+/// A directory as specified: column by column, then compressed.
 std::string directory_of(std::span<const PmtilesEntry> entries) {
   std::string bytes;
   append_varint(entries.size(), bytes);
@@ -91,7 +91,7 @@ void PmtilesWriter::add(const ArchiveTiles& tiles) {
   add_entries(first_id_of_zoom(tiles.zoom) + tiles.places.first, tiles.places.count, content);
 }
 
-// From one zoom to the next, tiles follow each other, too.
+// Tiles are consecutive across zooms, too.
 void PmtilesWriter::add_entries(std::uint64_t id, std::uint64_t count,
                                 const ContentTable::Content& content) {
   tile_count_ += count;
@@ -122,7 +122,7 @@ void PmtilesWriter::finish() {
   file_.finish();
 }
 
-// Leaves are as small as a root that fits into its place allows.
+// Leaves are as small as possible with a root that fits into its place.
 PmtilesWriter::Directories PmtilesWriter::write_directories() {
   const std::span<const PmtilesEntry> entries = entries_.items().first(entry_count_);
   const std::uint64_t begin = end_;

@@ -1,9 +1,10 @@
-// PMTiles, version 3: one file for everything, read by ranges of HTTP.
+// PMTiles, version 3: a single file, read with HTTP range requests.
 //
-// The header and the root directory come first, within 16 KiB, as the specification has it; then
-// the tiles, in order and each content once ("clustered"), the leaf directories, the metadata, and
-// last what only `trapeze seed --update` reads: the fingerprints by which tiles are known again,
-// with where their bytes are. The metadata tell where those are.
+// The header and the root directory come first, within 16 KiB, as the specification requires. Then
+// follow the tiles, in order and without duplicate contents ("clustered"), the leaf directories,
+// the metadata, and finally a section that only `trapeze seed --update` reads: the fingerprints by
+// which tiles are recognised, with the positions of their bytes. The metadata contain the position
+// of that section.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@
 
 namespace trapeze {
 
-/// An entry of a directory: `run` tiles from `id` on have these bytes. Of a leaf directory, run is
-/// 0.
+/// An entry of a directory: `run` tiles from `id` on have these bytes. If run is 0, the entry
+/// refers to a leaf directory.
 struct PmtilesEntry {
   std::uint64_t id = 0;
   std::uint64_t offset = 0;
@@ -27,14 +28,14 @@ struct PmtilesEntry {
   std::uint32_t run = 0;
 };
 
-/// As fingerprints are stored, in their order.
+/// The stored form of fingerprints, which are sorted.
 struct StoredFingerprint {
   Digest fingerprint;
   std::uint64_t offset = 0;  // in the file
   std::uint64_t length = 0;
 };
 
-/// The member of the metadata that says where the fingerprints are.
+/// The member of the metadata that contains the position of the fingerprints.
 inline constexpr const char* kPmtilesOwnMember = "trapeze";
 
 class PmtilesWriter final : public ArchiveWriter {
@@ -67,7 +68,7 @@ class PmtilesWriter final : public ArchiveWriter {
   const ArchiveDescription description_;
   AtomicFile file_;
   std::string buffer_;
-  std::uint64_t end_ = 0;  // of what was written
+  std::uint64_t end_ = 0;  // of the data written so far
   ContentTable contents_;
   ScratchArray<PmtilesEntry> entries_;
   ScratchArray<StoredFingerprint> fingerprints_;

@@ -1,5 +1,5 @@
-// An array in a file that has no name, so that the system may put it aside where memory is short,
-// and nothing of it is left behind.
+// An array in an unnamed file, so that the system can page it out when memory is short, and nothing
+// is left behind.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace trapeze {
 
-/// Memory in a file in the folder of `path`, all of it zero at first. The room on the disk is taken
-/// at once: where there is not enough, the constructor throws std::runtime_error that names `path`.
+/// Memory in a file in the folder of `path`, initially zero. Disk space is allocated immediately:
+/// if there is not enough, the constructor throws std::runtime_error that names `path`.
 class ScratchFile {
  public:
   ScratchFile(const std::string& path, std::size_t bytes);
@@ -25,7 +25,7 @@ class ScratchFile {
   std::span<std::byte> bytes_;
 };
 
-/// So many items, all of them zero at first.
+/// An array of that many items, initially zero.
 template <typename T>
 class ScratchArray {
  public:

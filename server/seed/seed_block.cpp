@@ -20,7 +20,7 @@ void append(std::span<const T> items, std::vector<std::byte>& bytes) {
   bytes.insert(bytes.end(), raw.begin(), raw.end());
 }
 
-/// Takes `count` items from the beginning of `bytes`; nothing if there are not so many.
+/// Removes `count` items from the beginning of `bytes`; nothing if there are fewer.
 template <typename T>
 std::optional<std::span<const T>> take(std::span<const std::byte>& bytes, std::uint64_t count) {
   if (count > bytes.size() / sizeof(T)) return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<std::span<const T>> take(std::span<const std::byte>& bytes, std::u
   return items;
 }
 
-/// Of a header and what follows it, from the job on.
+/// Covers the header from the job number on, and everything after it.
 std::uint64_t checksum_of_block(std::span<const std::byte> block) {
   return checksum(block.subspan(offsetof(BlockHeader, job)));
 }

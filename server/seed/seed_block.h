@@ -1,5 +1,6 @@
-// The tiles of one job as they are kept until the archive is made: which tile has which content,
-// and the contents, each once. A block is one piece of memory, as it lies in a file.
+// The tiles of one job as they are stored until the archive is created: the content of each tile,
+// and the contents without duplicates. A block is a contiguous piece of memory, with the same
+// layout as in the file.
 #pragma once
 
 #include <array>
@@ -18,11 +19,11 @@
 
 namespace trapeze {
 
-/// How tiles became known.
+/// Counts of tiles by how their contents were determined.
 struct SeedFigures {
-  std::uint64_t drawn = 0;  // by a renderer, or found among those of an earlier archive
-  std::uint64_t alone = 0;  // looked at one by one, and found to be of one colour
-  std::uint64_t known = 0;  // with all that lie below a tile
+  std::uint64_t drawn = 0;  // by a renderer, or taken from an earlier archive
+  std::uint64_t alone = 0;  // examined individually, and of one colour
+  std::uint64_t known = 0;  // together with all tiles below a tile
 
   std::uint64_t tiles() const { return drawn + alone + known; }
   void add(const SeedFigures& more) {
@@ -32,15 +33,15 @@ struct SeedFigures {
   }
 };
 
-/// Of a tile's bytes. Those of equal bytes are equal.
+/// The digest of a tile's bytes.
 Digest digest_of_bytes(std::string_view bytes);
 
-// The parts of a block, as they are stored.
+// The parts of a block, in their stored layout.
 struct BlockContent {
   Digest digest;
   std::uint64_t offset = 0;  // in the data of the block
   std::uint32_t length = 0;
-  std::uint32_t is_empty = 0;  // 1 if nothing is seen in it
+  std::uint32_t is_empty = 0;  // 1 if it shows nothing
 };
 struct BlockEntry {
   PlaceRange places;
@@ -52,8 +53,8 @@ struct BlockFingerprint {
 };
 struct BlockHeader {
   std::uint64_t mark = 0;
-  std::uint64_t bytes = 0;     // of the whole block, this header among them; a multiple of 8
-  std::uint64_t checksum = 0;  // of all that follows here
+  std::uint64_t bytes = 0;     // of the whole block including this header; a multiple of 8
+  std::uint64_t checksum = 0;  // of everything that follows
   std::uint64_t job = 0;
   SeedFigures figures;
   std::uint64_t contents = 0;
@@ -64,17 +65,17 @@ struct BlockHeader {
 /// Thread-safety: one thread at a time.
 class SeedBlockBuilder {
  public:
-  /// The content of a tile of that fingerprint, if it is there already.
+  /// The content of a tile with that fingerprint, if it has already been added.
   std::optional<std::uint64_t> find(const Digest& fingerprint) const;
-  /// The number of a content, which is added unless there is one of equal bytes.
+  /// The number of a content; adds it unless one with equal bytes exists.
   std::uint64_t add_content(std::string_view bytes, bool is_empty);
   void add_fingerprint(const Digest& fingerprint, std::uint64_t content);
-  /// After all others of that zoom, in order.
+  /// Must be called in order, after all other tiles of that zoom.
   void add_tiles(int zoom, const PlaceRange& places, std::uint64_t content);
 
   SeedFigures figures;
 
-  /// The block.
+  /// The finished block.
   std::vector<std::byte> bytes(std::uint64_t job) const;
 
  private:
@@ -88,7 +89,8 @@ class SeedBlockBuilder {
 /// A view of a block in memory, which must outlive it.
 class SeedBlock {
  public:
-  /// The block that `bytes` begins with. Nothing if there is none, or it is not whole.
+  /// The block at the beginning of `bytes`; nothing if there is none, or it is incomplete or
+  /// damaged.
   static std::optional<SeedBlock> read(std::span<const std::byte> bytes);
 
   std::uint64_t job() const { return header_.job; }

@@ -59,7 +59,7 @@ class Division {
   SeedJob job_;
 };
 
-/// From one character on, a number from 1 on; nothing if there is none.
+/// The number, 1 or greater, that the text consists of; nothing if it is not one.
 std::optional<std::size_t> number_in(std::string_view text) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

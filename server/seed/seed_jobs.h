@@ -1,5 +1,5 @@
-// The work of a seeding, cut into jobs of about equal cost. How it is cut depends on nothing but
-// the plan, so that whoever takes part in it has the same jobs.
+// The work of a seeding, divided into jobs of about equal cost. The division depends only on the
+// plan, so that all participants have the same jobs.
 #pragma once
 
 #include <cstddef>
@@ -15,29 +15,29 @@
 
 namespace trapeze {
 
-/// A tile, alone or with all that lie below it.
+/// A tile, alone or with all tiles below it.
 struct SeedUnit {
   TileId tile;
   bool is_subtree = false;
 };
 
-/// Units that follow each other.
+/// Consecutive units.
 struct SeedJob {
   std::size_t first_unit = 0;
   std::size_t end_unit = 0;
-  double cost = 0;   // as drawing_cost() counts, about
-  double tiles = 0;  // to be drawn, about
+  double cost = 0;   // approximate, in units of drawing_cost()
+  double tiles = 0;  // to be drawn, approximate
 };
 
-/// Jobs from one to another.
+/// A range of jobs.
 struct JobRange {
   std::size_t first = 0;
   std::size_t end = 0;
 };
 
 struct SeedJobs {
-  /// Each tile that is wanted once; each before those below it, and the four below one in the order
-  /// of the curve. So the tiles of every zoom are in order.
+  /// Contains each wanted tile once. A tile comes before those below it, and its four children are
+  /// in the order of the curve, so the tiles of every zoom are in order.
   std::vector<SeedUnit> units;
   std::vector<SeedJob> jobs;
 
@@ -48,22 +48,22 @@ struct SeedJobs {
   double tiles(const JobRange& range) const;
 };
 
-/// Tiles to be drawn in one job, at most, unless there are more in one unit: they are kept in
-/// memory until it is done, and drawn again if it is interrupted.
+/// The maximum number of tiles to draw in one job, unless a single unit has more: they are kept in
+/// memory until the job is done, and drawn again if it is interrupted.
 constexpr double kTilesOfJob = 256;
 
 SeedJobs divide_into_jobs(const SeedPlan& plan, KnownTiles& known,
                           double tiles_of_job = kTilesOfJob);
 
-/// One of several parts, counted from 1.
+/// One of several parts, numbered from 1.
 struct SeedPart {
   std::size_t number = 1;
   std::size_t count = 1;
 };
-/// "I/N" with 1 <= I <= N; nothing if it is something else.
+/// Parses "I/N" with 1 <= I <= N; nothing for other text.
 std::optional<SeedPart> parse_part(std::string_view text);
 
-/// The jobs of a part: parts have about equal costs, and each job belongs to one of them.
+/// The jobs of a part: parts have about equal costs, and each job belongs to exactly one of them.
 JobRange jobs_of_part(const SeedJobs& jobs, const SeedPart& part);
 
 }  // namespace trapeze

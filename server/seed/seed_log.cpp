@@ -32,7 +32,7 @@ constexpr std::size_t kAlignment = 8;
       fmt::format("cannot write {}: {}", path, std::generic_category().message(error)));
 }
 
-/// A line of JSON after the mark, and spaces up to where blocks begin.
+/// A line of JSON after the mark, padded with spaces up to where blocks begin.
 std::string text_of(const SeedLogHead& head) {
   const ArchiveDescription& archive = head.archive;
   const Json json = {{"identity", head.identity},
@@ -62,7 +62,7 @@ struct ReadHead {
   std::size_t size = 0;
 };
 
-/// Nothing if it is no head, or not a whole one.
+/// Nothing if it is not a head, or not a complete one.
 std::optional<ReadHead> read_head(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!text.starts_with(kMark)) return std::nullopt;
@@ -92,7 +92,8 @@ std::optional<ReadHead> read_head(std::span<const std::byte> bytes) {
   }
 }
 
-/// Calls visit(block) for the blocks that are whole, up to the first that is not; where that is.
+/// Calls visit(block) for the complete blocks up to the first incomplete one; returns where that
+/// begins.
 template <typename Visit>
 std::size_t for_each_block(std::span<const std::byte> bytes, std::size_t begin,
                            const Visit& visit) {
@@ -115,7 +116,7 @@ SeedLog::SeedLog(const std::string& path, const SeedLogHead& head)
     const std::string text = text_of(head);
     struct stat status {};
     if (fstat(file_, &status) != 0) fail_to_write(path, errno);
-    // What is shorter was interrupted before anything was done.
+    // A shorter file was interrupted before any block was written.
     if (static_cast<std::size_t>(status.st_size) <= text.size()) {
       append(std::as_bytes(std::span(text)));
       if (ftruncate(file_, static_cast<off_t>(end_)) != 0) fail_to_write(path, errno);
@@ -150,7 +151,7 @@ void SeedLog::append(std::span<const std::byte> block) {
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
       const int error = errno;
-      // What is left of it is cut off, here or when it is gone on with.
+      // Anything written is cut off, here or when the log is continued.
       [[maybe_unused]] const int ignored = ftruncate(file_, static_cast<off_t>(end_));
       fail_to_write(path_, error);
     }

@@ -1,6 +1,6 @@
-// What has been seeded so far, in a file: a head that says what is seeded, and the blocks of the
-// jobs that are done, in whatever order they were. It grows at its end only, so that whoever is
-// interrupted loses no more than what was under way.
+// A log of what has been seeded so far, in a file: a head that describes the seeding, and the
+// blocks of the finished jobs, in the order of completion. The file only grows at its end, so an
+// interruption loses only unfinished jobs.
 #pragma once
 
 #include <cstddef>
@@ -19,34 +19,34 @@
 
 namespace trapeze {
 
-/// What a log says of itself.
+/// The description at the beginning of a log.
 struct SeedLogHead {
-  std::string identity;  // see SeedPlan::identity(), with all that decides the archive
+  std::string identity;  // SeedPlan::identity() and all else that determines the archive
   std::uint64_t jobs = 0;
-  JobRange range;  // of the jobs, those of the log
+  JobRange range;  // the jobs of this log
   SeedPart part;
   ArchiveDescription archive;
 };
 
-/// A log that is written. Thread-safety: all methods may be called from any thread.
+/// A log opened for writing. Thread-safety: all methods may be called from any thread.
 class SeedLog {
  public:
-  /// Makes the file, or goes on with it: what was being written when it was interrupted is cut off.
-  /// Throws std::runtime_error that names the path if it cannot be written, if it is the log of
-  /// something else, or if another process writes it.
+  /// Creates the file, or continues it: an incomplete block left by an interruption is cut off.
+  /// Throws std::runtime_error that names the path if the file cannot be written, if it is the log
+  /// of another seeding, or if another process writes to it.
   SeedLog(const std::string& path, const SeedLogHead& head);
   ~SeedLog();
   SeedLog(const SeedLog&) = delete;
   SeedLog& operator=(const SeedLog&) = delete;
 
-  /// The jobs that were done when it was opened, and what became of their tiles.
+  /// The jobs that were done when the log was opened, and the figures of their tiles.
   const std::set<std::uint64_t>& done() const { return done_; }
   const SeedFigures& figures() const { return figures_; }
   std::uint64_t bytes_of_data() const { return end_; }
 
-  /// Appends a block. Throws std::runtime_error that names the path, the log being as it was.
+  /// Appends a block. Throws std::runtime_error that names the path; the log is then unchanged.
   void append(std::span<const std::byte> block);
-  /// Waits until all is on the disk. Throws like append().
+  /// Waits until everything is on disk. Throws like append().
   void sync();
 
  private:
@@ -58,11 +58,11 @@ class SeedLog {
   std::uint64_t end_ = 0;
 };
 
-/// Logs that are read: all jobs of one seeding. Thread-safety: immutable.
+/// Logs opened for reading: all jobs of one seeding. Thread-safety: immutable.
 class SeedLogs {
  public:
-  /// Throws std::runtime_error that names the path if one cannot be read, is of another seeding, or
-  /// has not been finished, or if there is no log of some of the jobs.
+  /// Throws std::runtime_error that names the path if a log cannot be read, belongs to another
+  /// seeding or is unfinished, or if there is no log of some of the jobs.
   explicit SeedLogs(const std::vector<std::string>& paths);
 
   const ArchiveDescription& archive() const { return archive_; }

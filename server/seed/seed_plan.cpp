@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-/// The column or row of a position, of those that there are.
+/// The column or row of a position, clamped to the existing ones.
 std::uint32_t tile_at(double cells, int zoom) {
   const auto side = static_cast<double>(TileId{zoom, 0, 0}.side());
   const double last = std::ldexp(1.0, zoom) - 1;

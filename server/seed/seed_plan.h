@@ -1,4 +1,4 @@
-// What is to be seeded: the plan of every zoom, and the tiles of it that are wanted.
+// What to seed: the plan of every zoom, and the tiles wanted.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@
 namespace trapeze {
 
 struct SeedRequest {
-  TileRequest tile;  // its tile is not looked at
+  TileRequest tile;  // the tile id in it is ignored
   ZoomRange zooms;
-  std::optional<GeographicBounds> bbox;  // tiles that meet it are wanted; all if it is not set
+  std::optional<GeographicBounds> bbox;  // tiles that intersect it are wanted; all if not set
 };
 
 /// Thread-safety: immutable, any number of threads may read.
@@ -31,20 +31,20 @@ class SeedPlan {
                                const std::shared_ptr<const Dataset>& dataset);
 
   const ZoomRange& zooms() const { return zooms_; }
-  /// Of one of the zooms, for any tile of it.
+  /// The plan of one of the zooms, for any tile of it.
   const TilePlan& at(int zoom) const {
     return plans_[static_cast<std::size_t>(zoom - zooms_.first)];
   }
   TilePlan plan_of(const TileId& tile) const;
 
-  /// Whether the tile, of any zoom up to the last, is wanted, or one below it.
+  /// Whether the tile or one below it is wanted; its zoom may be any up to the last.
   bool meets(const TileId& tile) const;
   /// Whether all tiles below it are wanted.
   bool holds_all_below(const TileId& tile) const;
-  /// How many tiles are wanted.
+  /// The number of wanted tiles.
   std::uint64_t count() const;
 
-  /// Hex digits that are equal only for plans that lead to the same bytes: of the data, style,
+  /// Hex digits that are equal only for plans that give the same bytes: they cover data, style,
   /// zooms, bounds, format and renderer.
   std::string identity(const std::string& renderer) const;
 
@@ -56,17 +56,17 @@ class SeedPlan {
     std::uint32_t last_y = 0;
   };
 
-  /// Of a zoom up to the last.
+  /// For a zoom up to the last.
   const Columns& columns(int zoom) const { return columns_[static_cast<std::size_t>(zoom)]; }
 
   ZoomRange zooms_;
   int scale_ = 1;
   std::vector<TilePlan> plans_;   // by zoom, from the first
-  std::vector<Columns> columns_;  // by zoom, from 0 on
+  std::vector<Columns> columns_;  // by zoom, from 0
 };
 
-/// "W,S,E,N" in degrees, W being west of E; nothing if it is something else, or lies wholly beyond
-/// the map.
+/// Parses "W,S,E,N" in degrees, with W west of E; nothing for other text, or if the box is
+/// completely off the map.
 std::optional<GeographicBounds> parse_bbox(std::string_view text);
 
 }  // namespace trapeze

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What was drawn while a file was written into may be drawn from anything.
+/// Tiles drawn while their file was overwritten may contain anything.
 void refuse_damaged(const SeedPlan& plan) {
   const TilePlan& any = plan.at(plan.zooms().last);
   for (const LayerPaint& paint : any.layers) {
@@ -28,7 +28,7 @@ void refuse_damaged(const SeedPlan& plan) {
   }
 }
 
-/// Of `count` items, all of them in an order in which any that are first are spread over them.
+/// A permutation of `count` items in which every initial section is spread over all items.
 std::vector<std::size_t> spread(std::size_t count) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -56,7 +56,7 @@ void Seeder::seed(const JobRange& range, SeedLog& log, const Report& report) {
   for (std::size_t job = range.first; job < range.end; ++job) {
     if (!log.done().contains(job)) left.push_back(job);
   }
-  std::mutex mutex;  // guards all below
+  std::mutex mutex;  // guards everything below
   SeedProgress progress;
   std::size_t next = 0;
   bool has_failed = false;
@@ -90,12 +90,12 @@ void Seeder::seed(const JobRange& range, SeedLog& log, const Report& report) {
   log.sync();
 }
 
-// Jobs that draw nothing cost about nothing, and are done all the same: so that of the others, each
-// stands for as many as there are of them for every one that was done.
+// Extrapolates by cost. Jobs that draw nothing are run as well, but cost about nothing, so they do
+// not distort the factor for the others.
 Seeder::Estimate Seeder::estimate(const JobRange& range, double seconds) {
   const auto order = spread(range.end - range.first);
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  std::mutex mutex;  // guards all below
+  std::mutex mutex;  // guards everything below
   std::size_t next = 0;
   double cost = 0;
   Estimate sum;

@@ -1,4 +1,4 @@
-// Draws the tiles of a seeding, as far as they are not known without, into a log.
+// Draws the tiles of a seeding that are not known without drawing, into a log.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@
 
 namespace trapeze {
 
-/// What has been done in this run.
+/// What was done in this run.
 struct SeedProgress {
   SeedFigures figures;
-  std::uint64_t reused = 0;  // of those drawn, the ones that were known from before
-  double cost = 0;           // of the jobs that are done
+  std::uint64_t reused = 0;  // those of the drawn tiles that came from an earlier archive
+  double cost = 0;           // of the finished jobs
 };
 
-/// Works with one thread for each renderer.
+/// Uses one thread for each renderer.
 class Seeder {
  public:
   using Report = std::function<void(const SeedProgress&)>;
@@ -32,18 +32,18 @@ class Seeder {
          std::vector<std::unique_ptr<MaskRenderer>> renderers,
          const std::shared_ptr<LabelBook>& labels, const JobPainter::FindKnown& find_known);
 
-  /// Does the jobs of the range that the log has not got. `report` is called after each, one call
-  /// at a time. Throws what drawing and the log throw, and std::runtime_error if the file of a
-  /// layer was written into.
+  /// Runs the jobs of the range that are missing in the log. `report` is called after each job, one
+  /// call at a time. Throws the errors of drawing and of the log, and std::runtime_error if the
+  /// file of a layer was overwritten.
   void seed(const JobRange& range, SeedLog& log, const Report& report);
 
   struct Estimate {
     SeedFigures figures;
-    double bytes = 0;    // of different contents, directories left out
+    double bytes = 0;    // of distinct contents, without directories
     double seconds = 0;  // on all threads
   };
-  /// What the jobs of the range would come to: some of them are done for about so many seconds, and
-  /// the others are taken to be like them. With time enough for all, the figures are exact.
+  /// Estimates the results for the jobs of the range: runs some of them for about that many
+  /// seconds, and extrapolates to the others. If there is time to run all, the figures are exact.
   Estimate estimate(const JobRange& range, double seconds);
 
  private:

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
   throw std::runtime_error(fmt::format("cannot write {}: {}", path, why));
 }
 
-/// Without a slash at the end, which would hide its name.
+/// Without a trailing slash, which would hide its name.
 std::string name_of_folder(const std::string& path) {
   const fs::path folder(path);
   return folder.has_filename() ? path : folder.parent_path().string();
@@ -72,7 +72,7 @@ void TileFolder::add(const ArchiveTiles& tiles) {
   }
 }
 
-// A file can have so many names only: what cannot be another name of one becomes one of its own.
+// The number of hard links to a file is limited: when a link cannot be created, a new file is.
 void TileFolder::add_file(const TileId& tile, std::string_view bytes,
                           ContentTable::Content& content) {
   make_folder_of(tile);

@@ -1,6 +1,6 @@
-// A folder of pictures, DIR/{z}/{x}/{y}.png, as any server of files serves it. Equal tiles are one
-// file of several names (hard links), as far as the file system has that. Of tiles in which nothing
-// is seen there is none.
+// A folder of images, DIR/{z}/{x}/{y}.png, to be served by any file server. Equal tiles are hard
+// links to one file, as far as the file system supports that. There are no files for tiles that
+// show nothing.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace trapeze {
 
 class TileFolder final : public ArchiveWriter {
  public:
-  /// Throws std::runtime_error also if there is a folder of that name with something in it.
+  /// Also throws std::runtime_error if there is a non-empty folder with that name.
   TileFolder(const std::string& path, ArchiveDescription description, const ArchiveSize& size);
 
   void add(const ArchiveTiles& tiles) override;
@@ -30,7 +30,7 @@ class TileFolder final : public ArchiveWriter {
   const ArchiveDescription description_;
   const Unfinished temporary_;
   ContentTable contents_;
-  int zoom_ = -1;  // of the folder that was made last
+  int zoom_ = -1;  // of the folder created last
   std::uint32_t column_ = 0;
 };
 

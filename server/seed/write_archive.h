@@ -1,4 +1,4 @@
-// The archive that a name stands for.
+// Creates the archive writer for a file name.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace trapeze {
 
-/// Begins the archive. Throws as ArchiveWriter does.
+/// Starts the archive. Throws as ArchiveWriter does.
 std::unique_ptr<ArchiveWriter> write_archive(const std::string& path,
                                              const ArchiveDescription& description,
                                              const ArchiveSize& size);

@@ -16,7 +16,7 @@
 namespace trapeze {
 namespace {
 
-/// To stand between quotes: nothing in it ends them, or the line.
+/// Escaped for use between quotes: it cannot end the quotes or the line.
 std::string escaped(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

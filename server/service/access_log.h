@@ -1,9 +1,8 @@
-// A line for every request that was answered.
+// The access log: one line for every answered request.
 //
-// Thread-safety: all methods may be called from any thread. Lines are written by a thread of the
-// log's own: whoever answers requests never waits for a disk or a pipe. If it cannot keep up, the
-// oldest lines are lost; the log of the server says how many, and what keeps them from being
-// written.
+// Thread-safety: all methods may be called from any thread. The log has its own writer thread, so
+// answering a request never waits for a disk or a pipe. If the writer cannot keep up, the oldest
+// lines are dropped; the server log reports how many, and why they could not be written.
 #pragma once
 
 #include <memory>
@@ -16,15 +15,15 @@ namespace trapeze {
 
 class LineWriter;
 
-/// The line of an answer, without a line end. As text it is what web servers call the combined
-/// format, followed by the seconds it took and X-Cache ("-" if there is none); what is not
-/// printable ASCII is escaped, so nothing that a client sends can forge a line.
+/// The line of an answer, without a line end. As text it is the combined log format of web servers,
+/// followed by the duration in seconds and X-Cache ("-" if there is none). Characters other than
+/// printable ASCII are escaped, so a client cannot forge a line.
 std::string access_line(const Answered& answered, LogFormat format);
 
 class AccessLog {
  public:
-  /// `target`: "stdout", "stderr", or the path of a file, to which lines are appended. Throws
-  /// std::runtime_error that names the file if it cannot be opened, or is a pipe that nobody reads.
+  /// `target` is "stdout", "stderr", or the path of a file to append to. Throws std::runtime_error
+  /// that names the file if it cannot be opened, or is a pipe without a reader.
   AccessLog(std::string target, LogFormat format);
   ~AccessLog();
   AccessLog(const AccessLog&) = delete;
@@ -32,11 +31,11 @@ class AccessLog {
 
   void write(const Answered& answered);
 
-  /// Opens the file anew, after it was renamed. If that fails, says so in the log of the server and
-  /// goes on with the old one.
+  /// Opens the file again, after it was renamed. If that fails, the server log reports it and the
+  /// old file stays in use.
   void reopen();
 
-  /// Waits until all lines have been written, but no longer than a second.
+  /// Waits until all lines have been written, but at most one second.
   void flush();
 
  private:

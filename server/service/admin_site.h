@@ -1,4 +1,4 @@
-// What is answered at the address for those who run the server.
+// Answers requests on the admin address, which is meant for operators.
 #pragma once
 
 #include <functional>
@@ -11,21 +11,21 @@
 
 namespace trapeze {
 
-/// The state of the server in detail, as JSON: what /ready answers there. `problem` is what went
-/// wrong when the layers were last read, empty if nothing did.
+/// The detailed state of the server as JSON, as /ready returns it on the admin address. `problem`
+/// is what went wrong when the layers were last read; empty if nothing did.
 std::string state_json(const ServerFigures& figures, const std::string& problem);
 
 /// Answers /metrics, /ready (503 with the same details while the server is not ready), /health and
-/// /changes?since=GENERATION (503 while they are being found, 404 for a generation that is not
-/// among the last few); everything else with 404. Thread-safe as far as `figures`, `problem` and
-/// `metrics` are.
+/// /changes?since=GENERATION (503 while the changes are being computed, 404 for a generation that
+/// is not among the last few). Answers all other paths with 404. As thread-safe as `figures`,
+/// `problem` and `metrics`.
 class AdminSite {
  public:
   struct Sources {
     std::function<ServerFigures()> figures;
     std::function<std::string()> problem;
     std::function<std::string()> metrics;
-    const ChangeLog* changes = nullptr;  // outlives the site; null: none are found
+    const ChangeLog* changes = nullptr;  // must outlive the site; null: no changes are computed
   };
   explicit AdminSite(Sources sources) : sources_(std::move(sources)) {}
 

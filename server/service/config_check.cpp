@@ -20,7 +20,7 @@
 namespace trapeze {
 namespace {
 
-/// In words, what `act` throws; empty if it does not.
+/// The message of what `act` throws; empty if it does not throw.
 template <typename Act>
 std::string failure_of(const Act& act) {
   try {
@@ -31,7 +31,7 @@ std::string failure_of(const Act& act) {
   }
 }
 
-/// Goes through the settings, in the order in which the server would use them.
+/// Checks the settings in the order in which the server would use them.
 class ConfigCheck {
  public:
   ConfigCheck(const LoadedConfig& loaded, const std::string& path)
@@ -50,7 +50,7 @@ class ConfigCheck {
     for (const LayerConfig& layer : config_.layers) {
       check_names(fmt::format("layer.{}.style", layer.name), layer.style);
       for (const LayerConfig& on_grid : with_grids({layer})) {
-        // A source is one for all grids.
+        // All grids share a source.
         const bool is_own = on_grid.grid.empty() || on_grid.file_to_open() != layer.file_to_open();
         if (is_own) check_layer(on_grid);
       }
@@ -98,7 +98,7 @@ class ConfigCheck {
   }
 
   void check_renderer() {
-    if (config_.server.renderer.kind == RendererKind::automatic) return;  // something always draws
+    if (config_.server.renderer.kind == RendererKind::automatic) return;  // one always works
     note("server.renderer", failure_of([this] { make_renderer(config_.server.renderer); }));
   }
 
@@ -116,13 +116,13 @@ class ConfigCheck {
   void check_address(const std::string& setting, const std::string& address) {
     HttpServerOptions options;
     options.address = address;
-    options.port = 0;  // any: that of the configuration may be taken by the server that runs
+    options.port = 0;  // any: the configured port may be in use by a running server
     note(setting, failure_of([&options] { HttpServer(options, {}); }));
   }
 
   static bool is_any(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
 
-  /// A style that names a table or fonts which are not there draws nothing.
+  /// A style that names missing tables or fonts draws nothing.
   void check_names(const std::string& setting, const StyleQuery& style) {
     for (const StyleSetting& each : style.settings()) {
       if (each.parameter == ParameterId::label_font &&
@@ -136,7 +136,7 @@ class ConfigCheck {
   }
 
   void check_layer(const LayerConfig& layer) {
-    if (layer.file_to_open().empty()) return;  // a problem of reading the configuration
+    if (layer.file_to_open().empty()) return;  // already a problem of reading the configuration
     for (const LayerProblem& problem : find_layer_problems(layer)) {
       auto& list = problem.is_warning ? findings_.warnings : findings_.problems;
       list.push_back(

@@ -1,4 +1,4 @@
-// Whether a server would start with a configuration.
+// Checks whether a server would start with a configuration.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 namespace trapeze {
 
 struct ConfigFindings {
-  std::vector<ConfigProblem> problems;  // the server does not start
-  std::vector<ConfigProblem> warnings;  // it starts, and its log warns of the same
+  std::vector<ConfigProblem> problems;  // that keep the server from starting
+  std::vector<ConfigProblem> warnings;  // the server starts and logs them
 };
 
-/// Finds all that is wrong with a configuration, which was read from `path`, each with its place:
-/// besides the problems of reading it, what its settings name is opened, as the server would. Where
-/// there are no problems, the server starts on this machine, unless reading all of a source finds
-/// something that opening it does not, or its port is taken. No file is made or changed.
+/// Finds all problems of a configuration read from `path`, with the place of each. Besides the
+/// problems of reading it, this opens everything that the settings name, as the server would. If
+/// there are no problems, the server starts on this machine, unless reading a whole source finds a
+/// problem that opening it does not, or the port is in use. Creates or changes no files.
 ConfigFindings check_config(const LoadedConfig& loaded, const std::string& path);
 
 }  // namespace trapeze

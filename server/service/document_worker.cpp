@@ -58,10 +58,10 @@ std::optional<DocumentWorker::Order> DocumentWorker::next_order() {
   return order;
 }
 
-// Several may have asked for one document while it was made.
+// Several clients may have requested the same document while it was being made.
 DocumentWorker::Answer DocumentWorker::answer(const Order& order) {
   if (auto kept = find(order.dataset, order.key)) return kept;
-  // This is the boundary of a request: nothing that goes wrong in one may end the worker.
+  // Request boundary: an error in one request must not end the worker.
   try {
     auto made = order.make();
     if (!made) return std::move(made).problem();
@@ -86,7 +86,7 @@ std::shared_ptr<const Document> DocumentWorker::find_kept(
 }
 
 void DocumentWorker::keep(const Order& order, const std::shared_ptr<const Document>& document) {
-  constexpr std::size_t kOverhead = 256;  // of an entry, about
+  constexpr std::size_t kOverhead = 256;  // approximate, per entry
   if (order.key.empty() || find_kept(order.dataset, order.key) != nullptr) return;
   kept_.insert(order.key, document, kOverhead + order.key.size() + document->bytes.size());
 }

@@ -1,5 +1,5 @@
-// Makes documents on a thread of its own, so that neither sockets nor tiles wait for a legend, and
-// keeps those that were made last.
+// Creates documents in a thread of its own, so that neither sockets nor tiles wait for a legend,
+// and caches the most recent ones.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -29,24 +29,25 @@ class DocumentWorker {
 
   /// Throws std::system_error if its thread cannot be started.
   DocumentWorker();
-  /// What waits is answered with a problem.
+  /// Waiting requests are answered with a problem.
   ~DocumentWorker();
   DocumentWorker(const DocumentWorker&) = delete;
   DocumentWorker& operator=(const DocumentWorker&) = delete;
 
-  /// What was made under that key of that dataset, if it is kept. Documents of other datasets are
-  /// forgotten.
+  /// The cached document with that key of that dataset; null if there is none. Drops the documents
+  /// of other datasets.
   std::shared_ptr<const Document> find(const std::shared_ptr<const Dataset>& dataset,
                                        const std::string& key);
 
-  /// Makes it, keeps it, and calls `callback` exactly once: from the worker, from within this call
-  /// if too many wait (503), or from the destructor. What `make` throws is logged, and answered
-  /// with a problem (500). What has an empty key is made every time.
+  /// Creates the document, caches it, and calls `callback` exactly once: from the worker, from
+  /// within this call if too many requests wait (503), or from the destructor. If `make` throws,
+  /// the error is logged and answered with a problem (500). Documents with an empty key are not
+  /// cached.
   void submit(std::shared_ptr<const Dataset> dataset, std::string key, Make make,
               Callback callback);
 
   static constexpr std::size_t kMostWaiting = 64;
-  static constexpr std::size_t kBudget = std::size_t{8} << 20;  // bytes of documents kept
+  static constexpr std::size_t kBudget = std::size_t{8} << 20;  // bytes of cached documents
 
  private:
   struct Order {
@@ -59,18 +60,18 @@ class DocumentWorker {
   void work();
   std::optional<Order> next_order();
   Answer answer(const Order& order);
-  /// The two below are called with the mutex locked.
+  /// Call these two with the mutex locked.
   std::shared_ptr<const Document> find_kept(const std::shared_ptr<const Dataset>& dataset,
                                             const std::string& key);
   void keep(const Order& order, const std::shared_ptr<const Document>& document);
 
-  std::mutex mutex_;  // guards all below but the thread
+  std::mutex mutex_;  // guards everything below except the thread
   std::condition_variable wake_;
   std::deque<Order> orders_;
   std::weak_ptr<const Dataset> kept_of_;
   LruMap<std::string, std::shared_ptr<const Document>> kept_{kBudget};
   bool is_stopping_ = false;
-  std::thread thread_;  // last, as it uses all others
+  std::thread thread_;  // last, as it uses all other members
 };
 
 }  // namespace trapeze

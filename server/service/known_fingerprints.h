@@ -1,4 +1,4 @@
-// The fingerprints of tiles that were asked for lately, so that they need not be looked for again.
+// Remembers the fingerprints of recently requested tiles, so that they need not be computed again.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -15,12 +15,13 @@ namespace trapeze {
 
 class KnownFingerprints {
  public:
-  /// `budget` in bytes.
+  /// `budget` is in bytes.
   explicit KnownFingerprints(std::size_t budget) {
     for (Shard& shard : shards_) shard.known = Map(budget / kShards);
   }
 
-  /// By the key of its plan, which holds the revisions of its layers; empty if it is not known.
+  /// Looks up the key of a plan, which includes the revisions of its layers; empty if it is not
+  /// known.
   std::string find(const std::string& plan_key) {
     Shard& shard = shard_of(plan_key);
     const std::lock_guard lock(shard.mutex);
@@ -36,8 +37,8 @@ class KnownFingerprints {
   }
 
  private:
-  static constexpr std::size_t kShards = 16;     // so that threads seldom wait for each other
-  static constexpr std::size_t kOverhead = 200;  // of an entry
+  static constexpr std::size_t kShards = 16;     // so that threads rarely wait for each other
+  static constexpr std::size_t kOverhead = 200;  // bytes per entry
 
   using Map = LruMap<std::string, std::string>;
   struct Shard {

@@ -1,4 +1,4 @@
-// What targets of tiles that are asked for again and again mean, so that they need not be parsed.
+// Remembers what frequently requested tile targets refer to, so that they need not be parsed again.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -19,28 +19,28 @@
 
 namespace trapeze {
 
-/// A tile of one state of the data.
+/// A tile for one state of the data.
 struct KnownTarget {
-  std::string fingerprint;  // and its key in the cache
+  std::string fingerprint;  // also its key in the cache
   TileFormat format = TileFormat::png;
-  std::vector<std::size_t> layers;  // that it shows, by their numbers in the dataset
+  std::vector<std::size_t> layers;  // that it shows, by index in the dataset
 };
 
 class KnownTargets {
  public:
-  /// `budget` in bytes.
+  /// `budget` is in bytes.
   explicit KnownTargets(std::size_t budget) : shard_budget_(budget / kShards) {
     for (Shard& shard : shards_) shard.known = Map(shard_budget_);
   }
 
-  /// Whether what a target means depends on nothing but itself and the data: named styles come and
-  /// go.
+  /// Whether the meaning of a target depends only on the target and the data. Targets with named
+  /// styles do not qualify: such styles come and go.
   static bool may_be_known(std::string_view target) {
     return target.size() <= kMostBytes && !contains(target, "/s/") && !contains(target, "style") &&
            !has_encoded_letters(target);
   }
 
-  /// Of that dataset; null if it is not known.
+  /// The tile for that dataset; null if it is not known.
   std::shared_ptr<const KnownTarget> find(const std::shared_ptr<const Dataset>& dataset,
                                           const std::string& target) {
     Shard& shard = shard_of(target);
@@ -66,9 +66,9 @@ class KnownTargets {
   }
 
  private:
-  static constexpr std::size_t kShards = 16;  // so that threads seldom wait for each other
+  static constexpr std::size_t kShards = 16;  // so that threads rarely wait for each other
   static constexpr std::size_t kMostBytes = 2048;
-  static constexpr std::size_t kOverhead = 300;  // of an entry
+  static constexpr std::size_t kOverhead = 300;  // bytes per entry
 
   using Map = LruMap<std::string, std::shared_ptr<const KnownTarget>>;
   struct Shard {
@@ -80,7 +80,7 @@ class KnownTargets {
   static bool contains(std::string_view text, std::string_view part) {
     return text.find(part) != std::string_view::npos;
   }
-  // Such as "%73tyle"; letters need no encoding.
+  // For example "%73tyle"; letters need no encoding.
   static bool has_encoded_letters(std::string_view text) {
     for (std::size_t i = text.find('%'); i < text.size(); i = text.find('%', i + 1)) {
       if (i + 1 < text.size() && text[i + 1] >= '4' && text[i + 1] <= '7') return true;
@@ -88,7 +88,7 @@ class KnownTargets {
     return false;
   }
 
-  /// By who owns it: another dataset may lie where one has been.
+  /// Compares owners, not addresses: a new dataset may be at the address of an old one.
   static bool is_of(const Shard& shard, const std::shared_ptr<const Dataset>& dataset) {
     return !shard.dataset.owner_before(dataset) && !dataset.owner_before(shard.dataset);
   }

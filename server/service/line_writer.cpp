@@ -18,7 +18,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::size_t kMostWaitingBytes = std::size_t{4} << 20;
-constexpr int kLookMs = 100;  // between looks whether to give up
+constexpr int kLookMs = 100;  // between checks whether to give up
 constexpr auto kLastWait = std::chrono::seconds(1);
 
 std::string words_of(int error) {
@@ -30,7 +30,7 @@ std::string problem_words(const std::string& path, int error) {
                      error == ENXIO ? "it is a pipe that nobody reads" : words_of(error));
 }
 
-/// Without waiting for a reader, if it is a pipe.
+/// For a pipe, does not wait for a reader.
 int open_at_end(const std::string& path) {
   const int descriptor =
       open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
@@ -68,8 +68,9 @@ std::string find_target_problem(const std::string& target) {
   }
 }
 
-/// So that writing to a full pipe does not wait, without changing that for others who have it.
-/// Where that cannot be done, put() takes care not to fill it.
+/// Opens the pipe again so that writing to it when full does not block, without changing that for
+/// other processes that share it. Where this is not possible, put() takes care not to fill the
+/// pipe.
 void LineFile::open_pipe_anew() {
   struct stat status {};
   if (fstat(descriptor_, &status) != 0 || !S_ISFIFO(status.st_mode)) return;
@@ -143,7 +144,8 @@ void LineWriter::work() {
   }
 }
 
-/// In pieces that a pipe takes as a whole once it has room, so that this does not hang in it.
+/// Writes in pieces that a pipe accepts as a whole once it has room, so that the write does not
+/// block.
 bool LineWriter::put(const Line& line) {
   const std::string text = (is_line_broken_ ? "\n" : "") + line.text;
   std::size_t done = 0;
@@ -178,7 +180,7 @@ void LineWriter::note_failure(int error) {
   if (!std::exchange(has_failed_, true) && events_.failed) events_.failed(words_of(error));
 }
 
-/// Once the queue has been worked off, so that it is told once.
+/// Called when the queue is empty, so that lost lines are reported once.
 void LineWriter::tell_what_is_lost() {
   std::uint64_t lost = 0;
   {

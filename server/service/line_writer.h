@@ -1,5 +1,5 @@
-// Lines to a file, a device or a pipe, written by a thread of their own: whoever has a line to
-// write never waits for a disk or for who reads a pipe.
+// Writes lines to a file, a device or a pipe in a thread of its own, so that callers never wait for
+// a disk or for the reader of a pipe.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -17,18 +17,18 @@
 
 namespace trapeze {
 
-/// A file that is written at its end.
+/// A file opened for appending.
 class LineFile {
  public:
-  /// "stdout", "stderr", or the path of a file, which is made if there is none. Throws
-  /// std::runtime_error, naming it, if it cannot be opened or is a pipe that nobody reads.
+  /// `target` is "stdout", "stderr", or the path of a file, which is created if it does not exist.
+  /// Throws std::runtime_error that names it if it cannot be opened or is a pipe without a reader.
   explicit LineFile(const std::string& target);
   ~LineFile();
   LineFile(const LineFile&) = delete;
   LineFile& operator=(const LineFile&) = delete;
 
   int descriptor() const { return descriptor_; }
-  /// Whether it has to be waited until it takes more.
+  /// Whether writing may fail until there is room, so that one has to wait.
   bool may_be_full() const { return may_be_full_; }
 
  private:
@@ -39,30 +39,31 @@ class LineFile {
   bool may_be_full_ = false;
 };
 
-/// In words, why a LineFile cannot be made of the target; empty if it can. Makes no file.
+/// Why a LineFile cannot be opened for the target, as text; empty if it can. Creates no file.
 std::string find_target_problem(const std::string& target);
 
 class LineWriter {
  public:
-  /// Called by the thread that writes; either may be empty.
+  /// Called by the writer thread; either may be empty.
   struct Events {
-    /// So many lines have been lost, and it goes on now.
+    /// So many lines were lost; writing has resumed.
     std::function<void(std::uint64_t lines)> lost;
-    /// The file takes nothing, in words; not told again until it has taken something.
+    /// The file accepts no data; `words` says why. Not called again until something has been
+    /// written.
     std::function<void(const std::string& words)> failed;
   };
 
   explicit LineWriter(std::shared_ptr<const LineFile> file, Events events = {});
-  /// Writes what waits, but no longer than a second if nothing is taken.
+  /// Writes the waiting lines, but gives up after a second if nothing is accepted.
   ~LineWriter();
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
-  /// A line end is added. If four megabytes wait already, the oldest lines are lost.
+  /// Adds a line end. If four megabytes are waiting already, the oldest lines are dropped.
   void write(std::string line);
-  /// Where lines go from here on.
+  /// Sets the file for all lines from here on.
   void redirect(std::shared_ptr<const LineFile> file);
-  /// Waits until all has been written, but no longer than that.
+  /// Waits until everything has been written, but at most that long.
   void flush(std::chrono::milliseconds patience);
 
  private:
@@ -79,16 +80,16 @@ class LineWriter {
   void tell_what_is_lost();
 
   const Events events_;
-  bool has_failed_ = false;      // the last line; of the thread
-  bool is_line_broken_ = false;  // the last one was written in part; of the thread
+  bool has_failed_ = false;      // whether writing the last line failed; used by the thread only
+  bool is_line_broken_ = false;  // whether the last line is incomplete; used by the thread only
 
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   std::condition_variable wake_;
   std::condition_variable is_idle_;
   std::shared_ptr<const LineFile> file_;
   std::deque<Line> queue_;
   std::size_t waiting_bytes_ = 0;
-  std::uint64_t lost_ = 0;  // and not yet told
+  std::uint64_t lost_ = 0;  // and not yet reported
   bool is_writing_ = false;
   bool is_stopping_ = false;
   Clock::time_point give_up_at_ = Clock::time_point::max();

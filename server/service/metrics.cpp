@@ -32,7 +32,7 @@ constexpr std::array<int, 16> kStatuses = {200, 201, 204, 304, 400, 403, 404, 40
                                            413, 414, 429, 431, 500, 503, 504, 0};
 constexpr std::size_t kOutcomes = kTileOutcomeNames.names().size();
 
-// Seconds: from an answer out of the cache to the deadline.
+// In seconds: from a cached answer up to the deadline.
 const prometheus::Histogram::BucketBoundaries kBuckets = {
     0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025,
     0.05,   0.1,     0.25,   0.5,   1,      2.5,   5,    10};
@@ -44,7 +44,7 @@ std::size_t place_in(const Range& known, const Value& value) {
       std::min<std::ptrdiff_t>(found - known.begin(), std::ssize(known) - 1));
 }
 
-/// Metrics of one family, made when they are first needed and then found without a lock.
+/// The metrics of one family. Each is created when first needed; later look-ups take no lock.
 template <typename Metric, std::size_t size>
 class Lazily {
  public:
@@ -52,7 +52,7 @@ class Lazily {
   Metric& get(std::size_t place, Make make) {
     Metric* metric = metrics_[place].load(std::memory_order_acquire);
     if (metric == nullptr) {
-      metric = &make();  // the family answers with the same one, should two threads come here
+      metric = &make();  // if two threads come here, the family returns the same one
       metrics_[place].store(metric, std::memory_order_release);
     }
     return *metric;
@@ -66,7 +66,7 @@ double unix_time() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Families that are told as they are found, not counted.
+/// Families that report a current state instead of counting.
 class Snapshot {
  public:
   MetricFamily& family(const char* name, const char* help, MetricType type) {

@@ -1,5 +1,5 @@
-// What the server tells Prometheus: counts and times of answers and tiles, and the state of its
-// parts at the moment it is asked.
+// The metrics for Prometheus: counts and durations of answers and tiles, and the state of the
+// server's parts at the time of the scrape.
 //
 // Thread-safety: all methods may be called from any thread. Counting takes well under a microsecond
 // and no lock that a scrape holds for longer.
@@ -19,7 +19,7 @@
 
 namespace trapeze {
 
-/// The state of the server's parts, to be told beside what was counted.
+/// The state of the server's parts, reported in addition to the counters.
 struct ServerFigures {
   std::shared_ptr<const Dataset> data;  // null: still loading
   TileCache::Figures cache;
@@ -41,10 +41,10 @@ class Metrics {
 
   void count(const Answered& answered);
   void count(const TileAnswer& tile);
-  /// Reading the layers ended, at the start or later.
+  /// Counts that reading the layers ended, at the start or later.
   void count_load(bool has_succeeded);
 
-  /// All of it, in the text format of Prometheus.
+  /// All metrics, in the text format of Prometheus.
   std::string text(const ServerFigures& figures) const;
 
   static constexpr std::string_view kContentType = "text/plain; version=0.0.4; charset=utf-8";

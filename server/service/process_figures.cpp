@@ -13,13 +13,13 @@
 namespace trapeze {
 namespace {
 
-constexpr int kFieldsBeforeStartTime = 19;  // in /proc/self/stat, after the name of the program
+constexpr int kFieldsBeforeStartTime = 19;  // in /proc/self/stat, after the program name
 
 double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) / 1e6;
 }
 
-/// The value of a line "name value" of a file.
+/// The value in a line "name value" of a file.
 double value_in(const char* path, const std::string& name) {
   std::ifstream file(path);
   std::string word;
@@ -35,7 +35,7 @@ double start_time() {
   std::ifstream file("/proc/self/stat");
   std::string line;
   std::getline(file, line);
-  const std::size_t name_end = line.rfind(')');  // the name may hold anything
+  const std::size_t name_end = line.rfind(')');  // the name may contain anything
   if (name_end == std::string::npos) return 0;
   std::istringstream fields(line.substr(name_end + 1));
   std::string skipped;
@@ -49,7 +49,7 @@ std::size_t count_open_files() {
   std::error_code error;
   const std::filesystem::directory_iterator files("/proc/self/fd", error);
   if (error) return 0;
-  return static_cast<std::size_t>(std::distance(begin(files), end(files))) - 1;  // but for this one
+  return static_cast<std::size_t>(std::distance(begin(files), end(files))) - 1;  // without this one
 }
 
 }  // namespace

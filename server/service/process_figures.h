@@ -1,4 +1,4 @@
-// What the kernel says about this process.
+// What the kernel reports about this process.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@ namespace trapeze {
 
 struct ProcessFigures {
   std::size_t resident_bytes = 0;
-  std::size_t peak_resident_bytes = 0;  // the most there ever were
+  std::size_t peak_resident_bytes = 0;  // maximum so far
   std::size_t virtual_bytes = 0;
   std::size_t open_files = 0;
   std::size_t max_files = 0;
@@ -15,7 +15,7 @@ struct ProcessFigures {
   double start_time = 0;  // seconds since 1970
 };
 
-/// What cannot be found out is 0.
+/// Values that cannot be determined are 0.
 ProcessFigures process_figures();
 
 }  // namespace trapeze

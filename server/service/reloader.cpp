@@ -14,20 +14,20 @@
 namespace trapeze {
 namespace {
 
-constexpr auto kTick = std::chrono::milliseconds(1000);  // without a watch, only to tidy up
-constexpr auto kRest = std::chrono::seconds(5);          // before a live layer is read whole again
-constexpr auto kLongAnswer = std::chrono::seconds(10);   // of a database: then it is told
+constexpr auto kTick = std::chrono::milliseconds(1000);  // without a watch, only for clean-up
+constexpr auto kRest = std::chrono::seconds(5);          // before a full read of a live layer
+constexpr auto kLongAnswer = std::chrono::seconds(10);   // of a database: logged after this time
 
 }  // namespace
 
-/// Datasets that nobody uses any more, until the reloader lets go of them: destroying one takes too
-/// long for the thread that happens to be the last to hold it.
+/// Datasets that are no longer used, kept until the reloader destroys them: destroying one takes
+/// too long for the thread that happens to hold the last reference.
 struct Reloader::Retired {
   std::mutex mutex;
   std::vector<std::shared_ptr<const Dataset>> datasets;
 };
 
-/// As long as it lives, a database is being asked.
+/// While an object of this class exists, a database query is in progress.
 class Reloader::Asking {
  public:
   Asking(Reloader& reloader, const std::string& layer) : reloader_(reloader) {
@@ -106,9 +106,9 @@ void Reloader::work() {
 void Reloader::follow() {
   if (!load_first()) return give_up_();
   is_loaded_();
-  return_free_memory();  // what building took, here and below
+  return_free_memory();  // used for building, here and below
   while (true) {
-    // Memory may be short outside of what load_again() catches; that passes.
+    // Memory may run out in places where load_again() does not catch it; that passes.
     try {
       if (!wait_for_a_reason()) return;
       load_again();
@@ -134,8 +134,8 @@ bool Reloader::load_first() {
 void Reloader::load_again() {
   is_loading_ = true;
   last_load_ = Clock::now();
-  // Before reading, as in serve(): if it fails, it is tried again only when something has changed
-  // since, be it while reading.
+  // Before reading, as in serve(): after a failure, the next attempt waits until something has
+  // changed since, possibly during reading.
   state_read_ = state_of_files(files_);
   try {
     serve(source_.layers());
@@ -158,13 +158,13 @@ void Reloader::note(const std::string& problem) {
 void Reloader::serve(const std::vector<LayerConfig>& layers) {
   const ValueTables values = source_.values ? source_.values() : ValueTables();
   files_ = watched_files(layers, values);
-  state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
+  state_read_ = state_of_files(files_);  // before reading: later changes are noticed
   std::vector<LiveLayer> live;
   for (const LayerConfig& layer : layers) {
     if (layer.live_query.empty()) continue;
     if (!watching_.joinable()) watching_ = std::thread([this] { watch_databases(); });
     const Asking asking(*this, layer.name);
-    live.emplace_back(layer);  // before it is read, likewise
+    live.emplace_back(layer);  // also before it is read
   }
   const auto before = data_.get();
   std::shared_ptr<const Dataset> loaded =
@@ -187,7 +187,7 @@ void Reloader::begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dat
     loaded = std::make_shared<const Dataset>(std::move(layers));
   }
   live_ = std::move(live);
-  if (live_.empty()) note_of_databases("");  // of those that were asked until now
+  if (live_.empty()) note_of_databases("");  // no database is queried any more
 }
 
 bool Reloader::follow_live() {
@@ -231,7 +231,7 @@ void Reloader::note_of_databases(const std::string& problem) {
   }
 }
 
-/// Tells of a question that is not answered: the thread that waits for the answer cannot.
+/// Logs that a query takes long: the thread that waits for the answer cannot.
 void Reloader::watch_databases() {
   std::unique_lock lock(mutex_);
   while (!wake_.wait_for(lock, kTick, [this] { return is_stopping_; })) {
@@ -273,7 +273,7 @@ std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>&
 /// False if the reloader is to end.
 bool Reloader::wait_for_a_reason() {
   while (true) {
-    forget_retired();  // here, so that it is done however often somebody asks
+    forget_retired();  // here, so that it is done however often reloads are requested
     {
       std::unique_lock lock(mutex_);
       const auto tick = pace_.watch.count() > 0 ? pace_.watch : kTick;
@@ -313,7 +313,7 @@ void Reloader::forget_retired() {
   }
   if (datasets.empty()) return;
   struct Mesh {
-    std::weak_ptr<const Layer> layer;  // to which it belongs
+    std::weak_ptr<const Layer> layer;  // that it belongs to
     std::uint64_t id;
   };
   std::vector<Mesh> meshes;
@@ -332,7 +332,7 @@ void Reloader::forget_retired() {
     }
   }
   datasets.clear();
-  // A layer that has not changed lives on in the dataset that is served.
+  // A layer that has not changed stays alive in the dataset being served.
   for (const Mesh& mesh : meshes) {
     if (mesh.layer.expired()) tiles_.forget(mesh.id);
   }

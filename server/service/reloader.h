@@ -1,8 +1,9 @@
-// Reads the layers that are served, and reads them again when told to or when their files change.
+// Reads the layers to serve, and reads them again on request or when their files change.
 //
-// Only layers that have changed, or may have, are read again. New ones are built beside the old
-// ones and all take their place at once; a worker that still draws from old ones keeps them alive.
-// If anything goes wrong, the old ones stay, and log and metrics say so.
+// Only layers that have changed, or may have changed, are read again. New layers are built while
+// the old ones are still served, then all are replaced at the same time; workers that still draw
+// from old layers keep these alive. If anything goes wrong, the old layers stay, and log and
+// metrics report it.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -29,63 +30,63 @@
 
 namespace trapeze {
 
-/// What is to be served, and the files that decide about it.
+/// The layers to serve, and the files that determine them.
 struct LayerSource {
-  /// The layers as configured at this moment. Throws std::exception that says what is wrong.
+  /// The layers as currently configured. Throws std::exception that says what is wrong.
   std::function<std::vector<LayerConfig>()> layers;
-  std::string config;  // the path of the configuration, watched as well; empty: there is none
-  /// The tables of values as layers() found them configured the last time; empty: none are.
+  std::string config;  // path of the configuration, which is watched as well; empty: none
+  /// The tables of values as configured when layers() was last called; empty: there are none.
   std::function<std::map<std::string, ValueTableConfig>()> values = {};
 };
 
 class Reloader {
  public:
-  /// The time between looks at what may change.
+  /// The intervals between checks for changes.
   struct Pace {
-    std::chrono::milliseconds watch{0};   // at the files; 0: none
-    std::chrono::milliseconds live{250};  // at the databases of layers that have a live_query
+    std::chrono::milliseconds watch{0};   // of the files; 0: they are not checked
+    std::chrono::milliseconds live{250};  // of the databases of layers with a live_query
   };
 
-  /// Does nothing until start(). A change of files is taken up when two looks in a row see the
-  /// same, one of a database at once. All references outlive the reloader.
-  /// `changes`, if it is not null, is told of all states that follow each other.
+  /// Does nothing until start(). A change of files takes effect when two consecutive checks see the
+  /// same state; a change in a database takes effect immediately. All references must outlive the
+  /// reloader. `changes`, if it is not null, is notified of every new state in order.
   Reloader(LayerSource source, Pace pace, CurrentDataset& data, TileService& tiles,
            Metrics& metrics, ChangeLog* changes, std::function<void()> give_up,
            std::function<void()> is_loaded);
-  /// Waits for the end of what is being read, as end() does but for as long as it takes.
+  /// Like end(), but waits as long as it takes for the current reading to finish.
   ~Reloader();
   Reloader(const Reloader&) = delete;
   Reloader& operator=(const Reloader&) = delete;
 
-  /// Begins to read the layers in a thread of its own. If they cannot be read the first time, calls
-  /// `give_up` from that thread, and does no more; else it calls `is_loaded` from there once. Call
-  /// it once.
+  /// Starts reading the layers in a thread of its own. If the first reading fails, calls `give_up`
+  /// from that thread and does nothing more; otherwise calls `is_loaded` from there once. Call it
+  /// once.
   void start();
 
-  /// Reads the layers again, soon.
+  /// Makes the thread read the layers again soon.
   void reload();
 
-  /// Reads no layers any more, and waits for what is being read or asked of a database, but no
-  /// longer than that. False if it takes longer: it cannot be interrupted.
+  /// Stops reading layers, and waits for the current reading or database query, but at most that
+  /// long. Returns false if it takes longer: it cannot be interrupted.
   bool end(std::chrono::milliseconds patience);
 
-  /// Whether layers are being read at this moment.
+  /// Whether layers are being read at the moment.
   bool is_loading() const { return is_loading_; }
-  /// Throws what went wrong with reading the layers for the first time.
+  /// Throws the error of the first reading of the layers.
   void rethrow_failure() const;
-  /// How far each layer is of those that are being read, or were read last.
+  /// The progress of each layer that is being read, or was read last.
   std::vector<LayerProgress> progress() const { return to_read_.get(); }
-  /// What went wrong the last time, in words; empty if nothing did.
+  /// What went wrong the last time, as text; empty if nothing did.
   std::string last_problem() const;
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Retired;
-  /// Asked of the database of a layer, and not answered yet.
+  /// A query to the database of a layer that has not been answered yet.
   struct Question {
     std::string layer;
     Clock::time_point since;
-    bool is_told = false;  // that it takes long
+    bool is_told = false;  // that it takes long: already logged
   };
   class Asking;
 
@@ -101,7 +102,7 @@ class Reloader {
   bool has_settled_change();
   void publish(std::shared_ptr<const Dataset> loaded);
   void begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dataset>& loaded);
-  /// Takes up what has changed in databases. False if a layer has to be read whole again.
+  /// Applies changes from databases. Returns false if a layer has to be read in full again.
   bool follow_live();
   void note_of_databases(const std::string& problem);
   void watch_databases();
@@ -120,26 +121,26 @@ class Reloader {
 
   LayersToRead to_read_;
 
-  // Of the thread.
+  // Used by the thread only.
   std::vector<std::string> files_;
   std::string state_read_;  // of the files when they were last read
-  std::string state_seen_;  // of the files at the last look
+  std::string state_seen_;  // of the files at the last check
   Clock::time_point last_look_;
   Clock::time_point last_load_;
   std::vector<LiveLayer> live_;
 
   std::atomic<bool> is_loading_ = true;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   std::condition_variable wake_;
   bool is_asked_ = false;
   bool is_stopping_ = false;
-  bool has_ended_ = true;         // the thread, or it has not been started
+  bool has_ended_ = true;         // the thread has ended or was never started
   std::string problem_;           // with reading the layers
-  std::string database_problem_;  // with asking what has changed
+  std::string database_problem_;  // with querying databases for changes
   std::optional<Question> question_;
   std::exception_ptr failure_;
   std::thread thread_;
-  std::thread watching_;  // databases that do not answer; runs once there is a live layer
+  std::thread watching_;  // watches unanswered queries; runs once there is a live layer
 };
 
 }  // namespace trapeze

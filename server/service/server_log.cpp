@@ -14,7 +14,7 @@
 namespace trapeze {
 namespace {
 
-/// Hands over lines.
+/// Passes lines on to the writer.
 class QueueingSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit QueueingSink(std::shared_ptr<LineWriter> writer) : writer_(std::move(writer)) {}

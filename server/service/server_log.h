@@ -1,4 +1,4 @@
-// The log of the server itself, on standard error.
+// The server log, on standard error.
 #pragma once
 
 #include <memory>
@@ -7,21 +7,22 @@ namespace trapeze {
 
 class LineWriter;
 
-/// As spdlog takes it: time, level, words.
+/// The pattern for spdlog: time, level, message.
 inline constexpr const char* kServerLogPattern = "%Y-%m-%dT%H:%M:%S.%e %l %v";
 
-/// While this lives, what is logged by spdlog is written by a thread of its own: whoever logs does
-/// not wait for who reads the log. If the reader is too slow, the oldest lines are lost and a
-/// warning says how many. Before and after, each line is written by who logs it.
+/// While an object of this class exists, messages logged with spdlog are written by a separate
+/// thread, so that logging never waits for the reader of the log. If the reader is too slow, the
+/// oldest lines are dropped and a warning reports how many. Before and afterwards, each line is
+/// written by the thread that logs it.
 class ServerLog {
  public:
-  /// Nobody logs meanwhile, here and at the end.
+  /// No thread may log during construction and destruction.
   ServerLog();
   ~ServerLog();
   ServerLog(const ServerLog&) = delete;
   ServerLog& operator=(const ServerLog&) = delete;
 
-  /// Waits until all has been written, but for no longer than a second.
+  /// Waits until everything has been written, but at most one second.
   void flush();
 
  private:

@@ -17,9 +17,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kEnd{200};  // of reading: more is not waited for
+constexpr milliseconds kEnd{200};  // for reading to end, at most
 
-/// The viewer of the program, or of a folder that is named in its place.
+/// The built-in viewer, or the one in a folder that is configured instead.
 StaticFiles open_viewer(const std::string& root) {
   if (root.empty()) return StaticFiles(viewer_files());
   StaticFiles files(root);
@@ -58,8 +58,8 @@ SiteOptions site_options(const Config& config) {
   return options;
 }
 
-/// As this machine reaches the server. An address that listens on all interfaces cannot be opened;
-/// that of this machine can.
+/// The URL of the server on this machine. An address that listens on all interfaces cannot be
+/// opened, but localhost can.
 std::string local_url(const std::string& listening, std::uint16_t port) {
   if (listening == "0.0.0.0" || listening == "::" || listening == "127.0.0.1") {
     return fmt::format("http://localhost:{}/", port);
@@ -95,7 +95,7 @@ bool is_loopback(const std::string& address) {
   return address == "::1" || address.starts_with("127.");
 }
 
-/// What everybody may do who reaches the server, if others than this machine can.
+/// What everyone who can reach the server may do, if other machines can reach it.
 std::vector<std::string> what_is_open(const Config& config) {
   std::vector<std::string> open;
   if (is_loopback(config.server.address)) return open;
@@ -212,11 +212,11 @@ void Service::act_on_signals() {
   });
 }
 
-// Told only now, as who reads it may send a signal at once.
+// The addresses are logged only now, because whoever reads them may send a signal immediately.
 void Service::run() {
   for (const std::string& line : where_) spdlog::info("{}", line);
-  reloader_->start();  // its first words come after these
-  // As long as the other, to be watched while it ends.
+  reloader_->start();  // its first messages follow these
+  // Runs as long as the main server, so that the shutdown can be observed.
   std::thread admin;
   if (admin_ != nullptr) admin = std::thread([this] { admin_->run(); });
   const auto end_admin = [this, &admin] {

@@ -1,4 +1,4 @@
-// A whole server: layers, workers, cache, sites and sockets, put together as configured.
+// A complete server: layers, workers, cache, sites and sockets, assembled from the configuration.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ namespace trapeze {
 
 class Service {
  public:
-  /// Opens the sockets of a server of the layers that `source` names. Throws
-  /// std::runtime_error if a socket, the renderer, the viewer or the log of requests does not work.
+  /// Opens the sockets of a server for the layers of `source`. Throws std::runtime_error if a
+  /// socket, the renderer, the viewer or the access log does not work.
   Service(const Config& config, LayerSource source);
   ~Service();
   Service(const Service&) = delete;
@@ -33,24 +33,24 @@ class Service {
 
   std::uint16_t port() const { return server_->port(); }
 
-  /// Acts on SIGTERM and SIGINT (ends, in order) and SIGHUP (reads the layers again, and opens the
-  /// log of requests again). Call before run().
+  /// Handles SIGTERM and SIGINT (orderly shutdown) and SIGHUP (reads the layers again and reopens
+  /// the access log). Call before run().
   void act_on_signals();
 
-  /// Reads the layers, and serves until stop() is called. Throws what went wrong if the layers
-  /// cannot be read.
+  /// Reads the layers, and serves until stop() is called. Throws the error if the layers cannot be
+  /// read.
   void run();
   /// From any thread.
   void stop() { server_->stop(); }
-  /// Reads the layers again, and opens the log of requests again. From any thread.
+  /// Reads the layers again and reopens the access log. From any thread.
   void reload();
 
-  /// After run(): ends what goes on beside requests. False if layers are still being read, which
-  /// cannot be interrupted: then the service must not be destroyed, but all it has logged has been
-  /// written and no command for changes runs any more.
+  /// Call after run(). Ends all background work. Returns false if layers are still being read,
+  /// which cannot be interrupted. In that case the service must not be destroyed; but everything it
+  /// has logged has been written, and no command for changes runs any more.
   bool finish();
 
-  /// Whether layers are being read at this moment.
+  /// Whether layers are being read at the moment.
   bool is_loading() const { return reloader_->is_loading(); }
 
  private:
@@ -63,15 +63,15 @@ class Service {
   const std::size_t cache_budget_;
   const std::size_t queue_limit_;
   Metrics metrics_;
-  std::unique_ptr<AccessLog> access_log_;  // null: there is none
+  std::unique_ptr<AccessLog> access_log_;  // null: no access log
   CurrentDataset data_;
   TileCache cache_;
   std::unique_ptr<TileService> tiles_;
   std::unique_ptr<Site> site_;
-  std::vector<std::string> where_;  // it listens, for the log
+  std::vector<std::string> where_;  // addresses it listens on, for the log
   std::unique_ptr<HttpServer> server_;
-  std::unique_ptr<ChangeLog> changes_;     // null if changes are not looked for
-  std::unique_ptr<AdminSite> admin_site_;  // these two are null if there is no admin address
+  std::unique_ptr<ChangeLog> changes_;     // null if changes are not computed
+  std::unique_ptr<AdminSite> admin_site_;  // these two are null without an admin address
   std::unique_ptr<HttpServer> admin_;
   std::string address_to_open_;
   std::unique_ptr<Reloader> reloader_;

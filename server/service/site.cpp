@@ -41,26 +41,26 @@ namespace {
 constexpr std::size_t kKnownTargetBytes = std::size_t{8} << 20;
 constexpr std::size_t kKnownFingerprintBytes = std::size_t{16} << 20;
 
-// Documents and the viewer may change with every start: ask again, and mostly hear 304.
+// Documents and the viewer may change with every start: clients revalidate, and usually get 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
 
-constexpr std::uint64_t kDocumentCost = 500'000;  // as drawing_cost() counts: 20 ms
-// The same of a picture after which a worker keeps no memory for the next one: about 100 MB.
+constexpr std::uint64_t kDocumentCost = 500'000;  // in units of drawing_cost(): 20 ms
+// In the same units. After such a picture, a worker frees its memory: about 100 MB.
 constexpr std::uint64_t kGiantTile = 4'000'000;
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint64_t kMostToldPixels = 1 << 22;  // of a picture that tells what is wrong
-constexpr int kClientGone = 499;                    // as nginx logs it; there is nobody to read it
+constexpr std::uint64_t kMostToldPixels = 1 << 22;  // of a picture with an error message
+constexpr int kClientGone = 499;                    // as nginx logs it; no client reads it
 
-// An address may post an eighth of the styles that are kept, and as much again each hour: so others
-// keep theirs.
+// An address may post an eighth of the memory for styles, and as much again each hour, so that
+// others keep theirs.
 constexpr double kShareSeconds = 3600;
 
 double share_of_styles(const SiteOptions& options) {
   return static_cast<double>(options.posted_styles) / 8;
 }
 
-// Tables are larger, and made by hand: an address may post half of those that are kept, and as much
-// again each ten minutes.
+// Tables are larger and made by hand: an address may post half of the memory for tables, and as
+// much again every ten minutes.
 constexpr double kTablesSeconds = 600;
 
 double share_of_tables(const SiteOptions& options) {
@@ -84,7 +84,7 @@ Problem still_loading() {
   return {503, "The data is still being loaded."};
 }
 
-/// Which layers are read, and how far.
+/// The layers being read, with their progress.
 Json loading_json(const SiteOptions& site) {
   Json layers = Json::array();
   for (const LayerProgress& layer : site.loading ? site.loading() : std::vector<LayerProgress>()) {
@@ -95,7 +95,7 @@ Json loading_json(const SiteOptions& site) {
   return {{"status", "loading"}, {"detail", still_loading().detail}, {"layers", std::move(layers)}};
 }
 
-/// For /ready, which tells the state of the server and no problem with a request.
+/// For /ready, which reports the state of the server and not a problem with a request.
 HttpResponse not_ready(const Json& state) {
   HttpResponse response;
   response.status = 503;
@@ -132,15 +132,15 @@ HttpResponse refuse_method(const std::string& method, std::string_view path) {
   return response;
 }
 
-/// What is known of a document before it is sent.
+/// What is known about a document before it is sent.
 struct DocumentHead {
   std::string_view content_type;
   std::string entity_tag;
   ContentEncoding encoding = ContentEncoding::identity;
-  bool varies = false;  // others may get it in another encoding
+  bool varies = false;  // other clients may get another encoding
 };
 
-/// 200 with the document, or 304 if the client has it already.
+/// 200 with the document, or 304 if the client already has it.
 HttpResponse document(const HttpRequest& request, const DocumentHead& head,
                       std::shared_ptr<const std::string> body) {
   HttpResponse response;
@@ -182,12 +182,12 @@ std::string server_timing(const PaintTimes& times) {
   return text;
 }
 
-/// Strong: tiles of the same fingerprint have the same bytes.
+/// A strong tag: tiles with the same fingerprint have the same bytes.
 std::string entity_tag_of(const std::string& fingerprint) {
   return fmt::format("\"{}\"", fingerprint);
 }
 
-/// How tiles are sent, whatever they show.
+/// Response settings of tiles that do not depend on their contents.
 struct TileHead {
   TileFormat format = TileFormat::png;
   std::string cache_control;
@@ -212,7 +212,7 @@ HttpResponse tile_response(const TileCache::Tile& tile, const std::string& finge
   return response;
 }
 
-/// Of a tile that is known by its fingerprint.
+/// For a tile whose fingerprint is known.
 HttpResponse answered_response(const TileAnswer& answer, const std::string& if_none_match,
                                const TileHead& head) {
   const PaintedTile& tile = answer.tile;
@@ -225,8 +225,8 @@ HttpResponse answered_response(const TileAnswer& answer, const std::string& if_n
   return response;
 }
 
-/// What is wrong, as clients of WMTS expect to be told. By key-value pairs nothing is "not found":
-/// the address is always the same.
+/// The problem in the format that WMTS clients expect. Requests with key-value pairs never get "not
+/// found": their address is always the same.
 HttpResponse in_words_of_wmts(HttpResponse response, std::string_view target) {
   if (response.problem == nullptr) return response;
   const auto split = split_target(target);
@@ -239,8 +239,8 @@ HttpResponse in_words_of_wmts(HttpResponse response, std::string_view target) {
   return response;
 }
 
-/// What is wrong, as clients of WMS ask to be told. A picture that tells of it is shown by them
-/// only if all seems well.
+/// The problem in the format that the WMS client requests. Clients show a picture with an error
+/// message only if its status is 200.
 HttpResponse in_words_of_wms(HttpResponse response, std::string_view target, const Fonts& fonts,
                              std::uint64_t most_pixels) {
   if (response.problem == nullptr) return response;
@@ -270,14 +270,15 @@ HttpResponse undrawn_response(TileOutcome outcome) {
   }
 }
 
-/// All that there is below /map are pictures.
+/// Everything below /map is a picture.
 std::optional<Result<PictureRequest>> find_map_picture(const DocumentRequest& request) {
   auto window = parse_map_picture(request);
   if (!window) return Result<PictureRequest>(std::move(window).problem());
   return Result<PictureRequest>(*std::move(window));
 }
 
-/// Of a picture: the least of both axes, then the greatest, in the order of the reference system.
+/// The bounds of a picture: the minimum of both axes, then the maximum, in the axis order of the
+/// reference system.
 std::string bounds_text(const WindowRequest& window) {
   const MapSystem& system = *window.system;
   const auto [west, south, east, north] = system.bounds_of(window.view);
@@ -325,7 +326,7 @@ void Site::handle(const HttpRequest& request, Respond respond) const {
   const std::string_view path = target ? target->path : std::string_view();
   const Area area = area_of(path);
   const bool has_own_words = area == Area::wmts || area == Area::wms;
-  // The last answers come while the service ends, when this site may be gone.
+  // The last answers may come while the service shuts down, after this site is gone.
   const auto respond_to_all =
       [respond = std::move(respond), area, fonts = options_.fonts, most = options_.map_pixels,
        target = has_own_words ? request.target : std::string()](HttpResponse response) {
@@ -346,7 +347,7 @@ void Site::handle(const HttpRequest& request, Respond respond) const {
 void Site::dispatch(const Target& target, const HttpRequest& request,
                     const Respond& respond) const {
   const Area area = area_of(target.path);
-  const bool is_all = target.path.size() == 1 + name_of(area).size();  // nothing follows its name
+  const bool is_all = target.path.size() == 1 + name_of(area).size();  // nothing follows the name
   switch (area) {
     case Area::tiles:
       return handle_tiles(target, request, respond);
@@ -449,8 +450,8 @@ void Site::send_json(const HttpRequest& request, Result<std::string> json,
                 respond);
 }
 
-// What is compressed is kept by the tag of its contents, whatever the address was. Where the worker
-// has too much to do, text is sent as it is.
+// Compressed documents are cached by the tag of their contents, regardless of the address. If the
+// worker is overloaded, the text is sent uncompressed.
 void Site::send_document(const HttpRequest& request, const std::shared_ptr<const Document>& made,
                          const Respond& respond) const {
   const DocumentHead plain = head_of(*made);
@@ -472,7 +473,7 @@ void Site::send_document(const HttpRequest& request, const std::shared_ptr<const
         if (!compressed) return Problem{500, "The document does not become smaller."};
         return Document{made->content_type, *std::move(compressed)};
       },
-      // The content types that the heads look at are those of `made`.
+      // The content types that the heads refer to belong to `made`.
       [request, respond, made, plain, head](const DocumentWorker::Answer& compressed) {
         respond(compressed ? document(request, head, bytes_of(*compressed))
                            : document(request, plain, bytes_of(made)));
@@ -513,7 +514,7 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
   return response;
 }
 
-// A table takes milliseconds to read, so that the worker of documents does it.
+// Reading a table takes milliseconds, so the document worker does it.
 void Site::handle_posted_values(const Target& target, const HttpRequest& request,
                                 const Respond& respond) const {
   const auto refuse = [&respond](const Problem& problem) { respond(problem_response(problem)); };
@@ -611,7 +612,7 @@ bool Site::answer_known(const HttpRequest& request, const Respond& respond) cons
   return true;
 }
 
-/// The answer if the tile need not be drawn: for who holds it, or from the cache.
+/// The answer if the tile need not be drawn: 304 if the client has it, or the tile from the cache.
 std::optional<HttpResponse> Site::find_held(const HttpRequest& request,
                                             const KnownTarget& tile) const {
   const TileHead head{tile.format, options_.cache_control};
@@ -757,7 +758,7 @@ void Site::handle_window(const WindowRequest& window, const HttpRequest& request
   if (!has_to_look(window, *dataset)) {
     return draw_window(window, std::move(dataset), request, respond);
   }
-  // Joins and classes of a whole layer take longer than sockets can wait.
+  // Joins and classes for a whole layer take too long for the I/O threads.
   if (auto refusal = find_impatience(request, kDocumentCost)) return respond(*std::move(refusal));
   const auto look = [window, dataset]() -> Result<Document> {
     const auto planned = plan_window(window, dataset);
@@ -800,7 +801,7 @@ void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Datase
   if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
   if (cost > defaults::kDearTile) order.cost = TileService::Cost::dear;
   if (cost > kGiantTile) order.cost = TileService::Cost::giant;
-  // The last answers come while the service ends, when this site may be gone.
+  // The last answers may come while the service shuts down, after this site is gone.
   auto answer_with = [&cache = cache_, fingerprints = known_fingerprints_, key = order.key, respond,
                       head = TileHead{window.format, options_.cache_control},
                       if_none_match = request.if_none_match, cost](const TileAnswer& answer) {
@@ -819,7 +820,7 @@ void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Datase
       return matches_entity_tag(if_none_match, entity_tag_of(fingerprint));
     };
   }
-  // Whoever has a tile mostly has the one that there is.
+  // A client that has a version of the tile usually has the current one.
   if (holds && order.may_be_known) {
     if (const auto answer = tiles_.answer_at_once(plan, cost, holds)) return answer_with(*answer);
   }

@@ -1,4 +1,4 @@
-// What every URL answers: requests in, responses out, without a socket.
+// Answers every URL: requests in, responses out, without a socket.
 //
 // Thread-safety: handle() may be called from any thread.
 #pragma once
@@ -35,51 +35,52 @@
 namespace trapeze {
 
 struct SiteOptions {
-  /// What documents call this server, without a '/' at the end; empty: by the Host of each request.
+  /// The URL of this server in documents, without a final '/'; empty: taken from the Host header of
+  /// each request.
   std::string public_url = {};
-  /// The Host headers that will do for that, as is_allowed_host() takes them; empty: all.
+  /// The Host headers accepted for that, in the format of is_allowed_host(); empty: all.
   std::vector<std::string> allowed_hosts = {};
-  /// What caches between here and the client may do with tiles.
+  /// The Cache-Control header of tiles, for caches between server and client.
   std::string cache_control{defaults::kCacheControl};
   std::size_t max_layers = kMaxLayersPerTile;  // of one tile
   int max_scale = kMaxScale;
   int max_zoom = kMaxZoom;
-  std::uint64_t map_pixels = defaults::kMapPixels;  // of a picture of a window
-  /// Tiles that one address may have drawn, as RateLimit takes them; 0: as many as it likes.
+  std::uint64_t map_pixels = defaults::kMapPixels;  // of the picture of a window
+  /// How many tiles one address may have drawn, see RateLimit; 0: no limit.
   double drawn_per_second = 0;
   double drawn_burst = 1;
-  /// What one tile may cost at most, as drawing_cost() counts; 0: whatever it does.
+  /// Maximum cost of one tile, as computed by drawing_cost(); 0: no limit.
   std::uint64_t tile_cost = defaults::kTileCost;
-  /// What the dear tiles and the documents of one address may cost, as RateLimit takes it; 0:
-  /// whatever they do.
+  /// Limit for the cost of the expensive tiles and the documents that one address requests, see
+  /// RateLimit; 0: no limit.
   double cost_per_second = 0;
   double cost_burst = 1;
-  /// What /metrics answers; empty: it is not there.
+  /// The response body of /metrics; empty: /metrics does not exist.
   std::function<std::string()> metrics = {};
-  /// What /ready tells of layers while they are read; empty: nothing.
+  /// The progress of layers for /ready while they are read; empty: not reported.
   std::function<std::vector<LayerProgress>()> loading = {};
-  /// Whether the server is about to end, and so not ready any more; empty: never.
+  /// Whether the server is about to stop and therefore no longer ready; empty: never.
   std::function<bool()> is_stopping = {};
   ViewerConfig viewer = {};
-  /// What is said at "/" where `files` have no page.
+  /// The text at "/" if `files` contain no page.
   std::string why_no_viewer = "There is no viewer here.";
-  /// What tiles there are.
+  /// The available tile matrix sets.
   std::shared_ptr<const TileMatrixSets> sets =
       std::make_shared<const TileMatrixSets>(TileMatrixSets::built_in());
-  /// What legends are written in.
+  /// Fonts for legends.
   std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
-  /// Styles by name, and the memory in bytes for those that are posted.
+  /// Named styles, and the memory in bytes for posted ones.
   std::map<std::string, StyleQuery> styles = {};
   std::vector<std::string> label_fonts = {};  // that styles may name
   std::size_t posted_styles = StyleBook::kDefaultBudget;
-  /// Rows of a table that is posted, and the memory in bytes for all of them.
+  /// Maximum rows of a posted table, and the memory in bytes for all posted tables.
   std::size_t values_rows = defaults::kValuesRows;
   std::size_t posted_values = std::size_t{defaults::kPostedValuesMegabytes} << 20;
 };
 
 class Site {
  public:
-  /// `data`, `tiles` and `cache` outlive the site, and `cache` also `tiles`.
+  /// `data`, `tiles` and `cache` must outlive the site, and `cache` must outlive `tiles`.
   Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, TileService& tiles,
        TileCache& cache);
 
@@ -87,11 +88,11 @@ class Site {
   void handle(const HttpRequest& request, Respond respond) const;
 
  private:
-  /// What makes documents, and perhaps finds that a picture of the map is asked for.
+  /// Creates documents. `find_picture`, if set, detects requests for a picture of the map.
   struct Documents {
     Result<Document> (*make)(const DocumentRequest& request);
     std::optional<Result<PictureRequest>> (*find_picture)(const DocumentRequest& request) = nullptr;
-    bool may_be_kept = true;  // while the data is the same
+    bool may_be_kept = true;  // cacheable while the data is the same
   };
 
   void dispatch(const Target& target, const HttpRequest& request, const Respond& respond) const;
@@ -100,7 +101,7 @@ class Site {
   Result<std::string> catalog(const HttpRequest& request) const;
   Result<std::string> tile_json_of(const TileJsonRequest& tiles, const HttpRequest& request) const;
   Result<std::string> style_json(std::string_view path) const;
-  /// Both are compressed for whoever takes that: by the worker of documents, as it takes time.
+  /// Both compress if the client accepts it. The document worker does that, as it takes time.
   void send_json(const HttpRequest& request, Result<std::string> json,
                  const Respond& respond) const;
   void send_document(const HttpRequest& request, const std::shared_ptr<const Document>& made,
@@ -118,19 +119,19 @@ class Site {
                       const Respond& respond) const;
   void handle_window(const WindowRequest& window, const HttpRequest& request,
                      const Respond& respond) const;
-  /// The same once everything is known about the layers that the style asks for.
+  /// The same once everything is known about the layers that the style needs.
   void draw_window(const WindowRequest& window, std::shared_ptr<const Dataset> dataset,
                    const HttpRequest& request, const Respond& respond) const;
   HttpResponse answer_metrics() const;
-  /// The response to a client that has asked for too much lately; null if it has not. Counts what
-  /// it asks for now.
+  /// The response to a client that has exceeded its limit; null otherwise. Charges the client for
+  /// this request.
   std::optional<HttpResponse> find_impatience(const HttpRequest& request, std::uint64_t cost) const;
-  /// What of a picture is beyond the limits of this site.
+  /// What in a request for a picture exceeds the limits of this site.
   std::optional<Problem> find_excess(const TileRequest& tile) const;
   std::optional<Problem> find_excess(const WindowRequest& window) const;
   std::optional<Problem> find_excess(std::span<const std::string> layers) const;
-  /// How the client reached this server, as the beginning of a URL; nothing if it does not say, or
-  /// says nonsense.
+  /// The beginning of the URL by which the client reached this server; a problem if the client does
+  /// not state it or it is invalid.
   Result<std::string> base_url(const HttpRequest& request) const;
 
   const SiteOptions options_;
@@ -143,10 +144,10 @@ class Site {
   TileService& tiles_;
   TileCache& cache_;
   const std::unique_ptr<KnownTargets> known_targets_;
-  const std::shared_ptr<KnownFingerprints> known_fingerprints_;  // with answers that come late
+  const std::shared_ptr<KnownFingerprints> known_fingerprints_;  // shared with late answers
   const std::shared_ptr<ValueBook> values_;
   const std::unique_ptr<StyleBook> styles_;
-  const std::unique_ptr<DocumentWorker> documents_;  // last, as it uses the others
+  const std::unique_ptr<DocumentWorker> documents_;  // last, as it uses the other members
 };
 
 }  // namespace trapeze

@@ -12,8 +12,9 @@ enum class RampKind { sequential, diverging, qualitative };
 struct Ramp {
   std::string_view name;
   RampKind kind;
-  /// Hex digits, each colour with a space. Sequential and diverging: first those for 3 classes,
-  /// then those for 4, and so on; qualitative: one list, of which fewer classes take the beginning.
+  /// Hex digits, each colour followed by a space. Sequential and diverging: first the colours for 3
+  /// classes, then those for 4, and so on. Qualitative: a single list, of which fewer classes use
+  /// the beginning.
   std::string_view colours;
 };
 
@@ -272,7 +273,7 @@ constexpr std::array<Ramp, 35> kRamps{{
 }};
 // clang-format on
 
-constexpr std::size_t kColourLength = 7;  // of text
+constexpr std::size_t kColourLength = 7;  // in text
 constexpr std::size_t kFewestColours = 3;
 constexpr std::string_view kReversed = "-r";
 
@@ -304,7 +305,7 @@ std::vector<Rgba> parse_colours(std::string_view text) {
   return colours;
 }
 
-/// Of a ramp that has lists for 3 to as many classes as its last list.
+/// For a ramp that has a list for each number of classes from 3 up.
 std::vector<Rgba> list_of(const Ramp& ramp, std::size_t count) {
   std::size_t begin = 0;
   for (std::size_t n = kFewestColours; n < count; ++n) begin += n * kColourLength;

@@ -1,4 +1,4 @@
-// Ramps of colours for maps, by name.
+// Colour ramps for maps, by name.
 //
 // The colours are those of ColorBrewer: this product includes color specifications and designs
 // developed by Cynthia Brewer (http://colorbrewer.org/), under the Apache License 2.0.
@@ -14,16 +14,16 @@
 
 namespace trapeze {
 
-/// The name as it is written in lists, with "-r" at its end if the ramp is to be reversed; nothing
-/// if there is no such ramp. Letters of `name` may be of either case.
+/// The canonical name of a ramp, ending with "-r" if it is reversed; nothing if there is no such
+/// ramp. Ignores the case of `name`.
 std::optional<std::string> find_ramp(std::string_view name);
 
-/// The ramp's colours for `count` >= 1 classes; `name` is as find_ramp() gives it. Ramps that lead
-/// from one end to another are interpolated where more are wanted than ColorBrewer has. Nothing if
-/// the ramp is one of unlike colours and has not so many.
+/// The ramp's colours for `count` >= 1 classes; `name` comes from find_ramp(). Sequential and
+/// diverging ramps are interpolated if more colours are needed than ColorBrewer has. Returns
+/// nothing if the ramp is qualitative and has too few colours.
 std::optional<std::vector<Rgba>> ramp_colours(std::string_view name, std::size_t count);
 
-/// All names, with commas between.
+/// All names, separated by commas.
 std::string ramp_names();
 
 }  // namespace trapeze

@@ -1,4 +1,4 @@
-// Marks over a tile that show what it is drawn from.
+// Marks over a tile that show the data it is drawn from.
 #pragma once
 
 #include "core/grid/name_table.h"
@@ -7,10 +7,10 @@ namespace trapeze {
 
 /// See the paper, Figure 7 f to j.
 struct DebugMarks {
-  bool faces = false;      // each feature in a colour of its own
+  bool faces = false;      // each feature in its own colour
   bool mesh = false;       // the sides of the trapezoids
-  bool vertices = false;   // the vertices that are kept
-  bool junctions = false;  // those of them around which lie three or more features
+  bool vertices = false;   // the vertices that are left
+  bool junctions = false;  // those where three or more features meet
   bool tile = false;       // the border of the tile, with its numbers
 
   bool any() const { return faces || mesh || vertices || junctions || tile; }

@@ -11,7 +11,7 @@ bool contains(const std::vector<std::int64_t>& ascending, std::int64_t id) {
   return std::ranges::binary_search(ascending, id);
 }
 
-/// Types differ only where a property of reals is compared with an integer.
+/// The types differ only if an attribute of real numbers is compared with an integer.
 bool is_equal(const Value& value, const FilterLiteral& literal) {
   if (const auto* integer = std::get_if<std::int64_t>(&value)) {
     const auto* other = std::get_if<std::int64_t>(&literal);
@@ -22,8 +22,7 @@ bool is_equal(const Value& value, const FilterLiteral& literal) {
   return real != nullptr && other != nullptr && *real == *other;
 }
 
-// The length precedes a text, so that no text can be taken for the end of one and the start of
-// another.
+// A text is preceded by its length, so that its end and the start of the next one are unambiguous.
 std::string key_of(const std::optional<FilterLiteral>& value) {
   if (!value) return "null;";
   if (const auto* integer = std::get_if<std::int64_t>(&*value)) return fmt::format("{};", *integer);
@@ -41,7 +40,7 @@ std::size_t Classing::class_of_others() const {
 
 Classing Classing::over(const FeatureTable& features) const {
   Classing other = *this;
-  if (joined != nullptr) return other;  // of a layer that is in one piece
+  if (joined != nullptr) return other;  // only for a layer in one piece
   if (filter != nullptr) other.filter = std::make_shared<const BoundFilter>(filter->over(features));
   return other;
 }
@@ -95,14 +94,14 @@ std::uint8_t FeatureClassifier::class_of_value(const Value& value) const {
     const auto found = std::ranges::find_if(classing_.values, [&](const auto& wanted) {
       return is_null ? !wanted.has_value() : wanted.has_value() && is_equal(value, *wanted);
     });
-    // Its end is the others.
+    // The end is the class of others.
     return class_of_index(static_cast<std::size_t>(found - classing_.values.begin()));
   }
   if (is_null) return others;
   const auto* integer = std::get_if<std::int64_t>(&value);
   const double number =
       integer != nullptr ? static_cast<double>(*integer) : std::get<double>(value);
-  if (number != number) return others;  // not a number
+  if (number != number) return others;  // NaN
   return static_cast<std::uint8_t>(std::ranges::upper_bound(classing_.breaks, number) -
                                    classing_.breaks.begin());
 }
@@ -129,7 +128,7 @@ std::string key_of(std::uint64_t revision, const Classing& classing) {
 std::shared_ptr<const FeatureClasses> FeatureClassCache::find(std::uint64_t revision,
                                                               const Classing& classing,
                                                               const FeatureTable& features) {
-  constexpr std::size_t kOverhead = 256;  // of an entry, about
+  constexpr std::size_t kOverhead = 256;  // approximate, per entry
   const std::string key = key_of(revision, classing);
   const std::size_t bytes = features.size() + 2 * key.size() + kOverhead;
   const auto entry = find_or_insert(key, bytes);

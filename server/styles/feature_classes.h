@@ -1,5 +1,5 @@
-// Which features of a layer are drawn, and in which class: by the value of a property, by a filter,
-// by ids.
+// Determines which features of a layer are drawn, and in which class: by the value of an attribute,
+// by a filter, by ids.
 #pragma once
 
 #include <atomic>
@@ -22,27 +22,27 @@
 
 namespace trapeze {
 
-/// The rules. Its field, values and filter fit the features of the layer that it was made for; with
-/// a filter, these must outlive it.
-/// Classes are numbered: those of the values or between the breaks, then that of all others, then
-/// that of highlighted features.
+/// The rules. Field, values and filter must fit the features of the layer that the rules were made
+/// for; if there is a filter, the features must outlive the rules.
+/// Classes are numbered: first those of the values or between the breaks, then the class of all
+/// others, then that of highlighted features.
 struct Classing {
-  int field = -1;  // number of the property that values or breaks are about; -1: none
-  /// Values by which features can be classed and filtered beside their attributes; null: none.
+  int field = -1;  // index of the attribute for values or breaks; -1: none
+  /// Joined values, which can be used for classes and filters like attributes; null: none.
   std::shared_ptr<const JoinedValues> joined;
-  /// Class i is that of the value; null: of the features that have none.
+  /// Class i has value i; null: the features without a value.
   std::vector<std::optional<FilterLiteral>> values;
-  /// The class that stands for class i of `values`: those that look alike are drawn as one.
-  /// Empty: each for itself.
+  /// The class that replaces class i of `values`: classes that look the same are drawn as one.
+  /// Empty: no class is replaced.
   std::vector<std::uint8_t> alike;
-  std::vector<double> breaks;  // ascending; class i is that of the numbers below breaks[i]
-  std::shared_ptr<const BoundFilter> filter;  // null: all pass
-  std::vector<std::int64_t> ids;              // ascending; the only ones drawn; empty: all
+  std::vector<double> breaks;                 // ascending; class i has the numbers below breaks[i]
+  std::shared_ptr<const BoundFilter> filter;  // null: all features pass
+  std::vector<std::int64_t> ids;              // ascending; only these are drawn; empty: all
   std::vector<std::int64_t> highlighted_ids;  // ascending
 
   std::size_t class_of_others() const;
   std::size_t class_of_highlighted() const { return class_of_others() + 1; }
-  /// The same rules for the features of another table that has the same fields.
+  /// The same rules for the features of another table with the same fields.
   Classing over(const FeatureTable& features) const;
   /// Whether all features are drawn, in one class.
   bool is_plain() const;
@@ -50,12 +50,12 @@ struct Classing {
   std::string key() const;
 };
 
-/// Applies the rules to one feature after the other. Refers to both, which must outlive it.
+/// Applies the rules to single features. Refers to both arguments, which must outlive it.
 class FeatureClassifier {
  public:
   FeatureClassifier(const Classing& classing, const FeatureTable& features);
 
-  /// The number of its class, or kNotDrawn.
+  /// The number of the feature's class, or kNotDrawn.
   std::uint8_t class_of(std::uint32_t row) const;
 
  private:
@@ -72,21 +72,21 @@ class FeatureClassifier {
 using FeatureClasses = std::vector<std::uint8_t>;
 FeatureClasses classify(const Classing& classing, const FeatureTable& features);
 
-/// Keeps the classes of the rules that were asked for last, within a budget of memory.
+/// Caches the classes of the most recently used rules, within a memory budget.
 ///
 /// Thread-safety: any thread may call any function; a call of find() for classes that another
 /// thread is computing waits for them.
 class FeatureClassCache {
  public:
-  /// `budget` in bytes; what alone is larger is made every time.
+  /// `budget` is in bytes; classes larger than the budget are computed every time.
   explicit FeatureClassCache(std::size_t budget) : entries_(budget) {}
 
-  /// `revision` tells the features of one layer from those of another, and from changed ones.
+  /// `revision` identifies the features of a layer in a certain state.
   std::shared_ptr<const FeatureClasses> find(std::uint64_t revision, const Classing& classing,
                                              const FeatureTable& features);
-  /// Whether find() would have nothing to compute, nor to wait for.
+  /// Whether find() has nothing to compute and no other thread to wait for.
   bool has(std::uint64_t revision, const Classing& classing);
-  /// Bytes held.
+  /// Memory in bytes.
   std::size_t memory() const;
 
  private:
@@ -98,7 +98,7 @@ class FeatureClassCache {
 
   std::shared_ptr<Entry> find_or_insert(const std::string& key, std::size_t bytes);
 
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   LruMap<std::string, std::shared_ptr<Entry>> entries_;
 };
 

@@ -22,7 +22,7 @@ bool is_digit(char c) {
 }
 
 bool is_letter(char c) {
-  // Bytes of UTF-8 beyond ASCII are letters of names too.
+  // UTF-8 bytes beyond ASCII also count as letters of names.
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
          static_cast<unsigned char>(c) >= 0x80;
 }
@@ -48,11 +48,11 @@ enum class TokenKind { end, word, name, text, number, symbol };
 
 struct Token {
   TokenKind kind = TokenKind::end;
-  std::string text;  // unquoted; of a word that is a keyword in upper case
+  std::string text;  // unquoted; keywords are in upper case
   std::size_t position = 0;
 };
 
-/// What ends the parsing; caught where it begins.
+/// Aborts the parsing; caught where it starts.
 struct ParseError {
   std::string what;
 };
@@ -76,7 +76,7 @@ class Lexer {
   }
 
  private:
-  /// A quote within is doubled.
+  /// A quote inside is doubled.
   std::string quoted(char quote) {
     const std::size_t begin = at_++;
     std::string content;
@@ -141,7 +141,7 @@ std::optional<FilterLiteral> parse_number(std::string_view text) {
   double real = 0;
   const auto [real_end, real_error] = std::from_chars(text.data(), end, real);
   if (real_error != std::errc() || real_end != end || !std::isfinite(real)) return std::nullopt;
-  // Whatever has the text of an integer is one.
+  // A number with an integral value is an integer, however it is written.
   constexpr double kTooLarge = 9223372036854775808.0;  // 2^63
   if (real >= -kTooLarge && real < kTooLarge && real == std::trunc(real)) {
     return static_cast<std::int64_t>(real);
@@ -229,7 +229,8 @@ std::string text_of(const FilterNode& node) {
 
 // ---- from a text to a node
 
-/// AND or OR of nodes: those of the same kind are taken in, all sorted, each kept once.
+/// Joins nodes with AND or OR: nested nodes of the same kind are merged, then all are sorted
+/// without duplicates.
 FilterNode joined(FilterOperator op, std::vector<FilterNode> nodes) {
   std::vector<std::pair<std::string, FilterNode>> operands;
   for (FilterNode& node : nodes) {
@@ -262,7 +263,7 @@ FilterNode negation(FilterNode node) {
   return result;
 }
 
-/// The operator with its sides changed.
+/// The operator with its operands swapped.
 FilterOperator mirrored(FilterOperator op) {
   switch (op) {
     case FilterOperator::less:
@@ -440,9 +441,9 @@ class Parser {
   std::size_t terms_ = 0;
 };
 
-// ---- the truth about values
+// ---- evaluation
 
-/// Exact also between an integer and a real number: long double holds all of both.
+/// Exact even between an integer and a real number: long double represents all values of both.
 std::partial_ordering compare(const Value& value, const FilterLiteral& literal) {
   if (const auto* text = std::get_if<std::string_view>(&value)) {
     return *text <=> std::string_view(std::get<std::string>(literal));
@@ -501,7 +502,7 @@ std::variant<std::shared_ptr<const Filter>, Filter::Mistake> Filter::parse(std::
   }
   try {
     const std::shared_ptr<const Filter> filter(new Filter(Parser(text).parse()));
-    // Written in full it must be a filter again.
+    // The canonical text must be a valid filter, too.
     if (filter->text().size() > kMaxFilterLength) {
       return Mistake{fmt::format("its numbers make it longer than {} bytes", kMaxFilterLength)};
     }

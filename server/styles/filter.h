@@ -1,10 +1,9 @@
-// A condition on the attributes of features, written in a subset of CQL2 text: comparisons, IN,
-// BETWEEN, LIKE, IS NULL, AND, OR, NOT and parentheses over properties, strings, numbers, TRUE and
-// FALSE.
+// A condition on the attributes of features, in a subset of CQL2 text: comparisons, IN, BETWEEN,
+// LIKE, IS NULL, AND, OR, NOT and parentheses over attributes, strings, numbers, TRUE and FALSE.
 //
-// Text from a request becomes a Filter, whatever the data; a Filter becomes a BoundFilter for the
-// fields of one layer. Null is neither true nor false, as in SQL: a feature passes only where the
-// condition is true.
+// Text from a request is parsed into a Filter, independently of the data; a Filter is bound to the
+// fields of one layer as a BoundFilter. Null is neither true nor false, as in SQL: a feature passes
+// only if the condition is true.
 #pragma once
 
 #include <cstddef>
@@ -34,21 +33,21 @@ enum class FilterOperator : std::uint8_t {
   all,      // of the operands
   any,      // of the operands
   negated,  // the operand
-  equal,    // the property to the literal, here and below
+  equal,    // attribute and literal, here and below
   unequal,
   less,
   less_equal,
   greater,
   greater_equal,
-  in,       // one of the literals
-  between,  // the two literals, both included
-  like,     // the literal, in which % stands for anything and _ for any one character
+  in,       // is one of the literals
+  between,  // is between the two literals, inclusive
+  like,     // matches the literal; % matches anything, _ one character
   is_null,
 };
 
 struct FilterNode {
   FilterOperator op = FilterOperator::all;
-  std::vector<FilterNode> operands;  // in the order of their text, each once
+  std::vector<FilterNode> operands;  // in the order of their text, without duplicates
   std::string property;
   std::vector<FilterLiteral> literals;
 };
@@ -56,7 +55,7 @@ struct FilterNode {
 /// Thread-safety: immutable.
 class Filter {
  public:
-  /// What is wrong, for a sentence: "at byte 12 a literal is missing".
+  /// What is wrong, as part of a sentence: "at byte 12 a literal is missing".
   struct Mistake {
     std::string what;
   };
@@ -64,7 +63,7 @@ class Filter {
 
   const FilterNode& root() const { return root_; }
   /// Equal for filters that differ only in spaces, case of keywords, parentheses, and the order of
-  /// what AND, OR and IN join. Is itself a text of the filter.
+  /// the operands of AND, OR and IN. Can be parsed as the same filter.
   const std::string& text() const { return text_; }
 
  private:
@@ -74,15 +73,15 @@ class Filter {
   std::string text_;
 };
 
-/// A filter whose properties are attributes of features, or values joined to them. Refers to the
-/// features, which must outlive it.
+/// A filter whose properties are resolved to attributes of features or values joined to them.
+/// Refers to the features, which must outlive it.
 class BoundFilter {
  public:
-  /// The problem, 400, names a property that there is not, with those there are, or one that is
-  /// compared with what it cannot be.
+  /// The problem, 400, reports a property that does not exist, together with those that do, or a
+  /// property that is compared with a value of a wrong type.
   static Result<BoundFilter> bind(std::shared_ptr<const Filter> filter, Attributes attributes);
 
-  /// The same over another table that has the same fields, without joined values.
+  /// The same filter for another table with the same fields, without joined values.
   BoundFilter over(const FeatureTable& features) const {
     BoundFilter other = *this;
     other.attributes_ = Attributes(features);
@@ -90,7 +89,7 @@ class BoundFilter {
   }
 
   bool passes(std::uint32_t row) const;
-  /// That of the filter.
+  /// The text of the filter.
   const std::string& text() const { return filter_->text(); }
 
  private:
@@ -99,7 +98,7 @@ class BoundFilter {
   struct Node {
     const FilterNode* source = nullptr;
     int field = -1;
-    std::optional<LikePattern> pattern = {};  // of LIKE
+    std::optional<LikePattern> pattern = {};  // for LIKE
     std::vector<Node> operands;
   };
 
@@ -111,15 +110,15 @@ class BoundFilter {
   Truth evaluate_all(const Node& node, std::uint32_t row) const;
   Truth evaluate_any(const Node& node, std::uint32_t row) const;
 
-  std::shared_ptr<const Filter> filter_;  // in which the nodes are
+  std::shared_ptr<const Filter> filter_;  // owns the nodes
   Attributes attributes_;
   Node root_;
 };
 
-/// The text in single quotes; a quote in it is written twice.
+/// The text in single quotes; single quotes in it are doubled.
 std::string single_quoted(std::string_view text);
 
-/// The problem of a parameter that names a property which the layer has not.
+/// The problem of a parameter that names a property which the layer does not have.
 Problem unknown_property(std::string_view parameter, const std::string& property,
                          const Attributes& attributes);
 

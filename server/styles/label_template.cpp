@@ -30,8 +30,8 @@ std::string words_of(const Value& value, const std::optional<NumberFormat>& form
       value);
 }
 
-/// White space and control characters are one space, but at the ends. A byte that is no part of
-/// UTF-8 is left to who draws it.
+/// Reduces white space and control characters to single spaces, with none at the ends. Bytes that
+/// are not valid UTF-8 are left to the code that draws the text.
 std::string tidied(std::string_view text) {
   std::string tidy;
   std::size_t letters = 0;

@@ -1,4 +1,4 @@
-// What a label says of a feature: text with attributes in it.
+// The text of labels: a template that contains attributes.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -15,26 +15,26 @@
 
 namespace trapeze {
 
-/// "{NAME} ({A3})": the names of attributes in braces, and what stands around them. Text without
+/// For example "{NAME} ({A3})": names of attributes in braces, with text around them. Text without
 /// braces is the name of an attribute.
 class LabelTemplate {
  public:
-  /// Whether each brace has its counterpart, and none of the names is empty.
+  /// Whether all braces are balanced and no name is empty.
   static bool is_valid(std::string_view text);
 
-  /// Looks for the attributes, and for those that say the same in a language: NAME:LANGUAGE or
-  /// NAME_LANGUAGE. `text` is valid. The problem, 400, is a name that there is not.
+  /// Finds the attributes, and their translations in a language: NAME:LANGUAGE or NAME_LANGUAGE.
+  /// `text` must be valid. The problem, 400, reports a name that does not exist.
   static Result<LabelTemplate> bind(std::string_view text, const Attributes& attributes,
                                     std::string_view language = {});
 
-  /// What it says of the feature in that row: attributes that are null say nothing. Numbers are
-  /// written by the format, or else with as many digits as it takes. Empty if none of the
-  /// attributes says anything. White space is one space each, none at the ends, and what is longer
-  /// than kMostLetters ends in an ellipsis.
+  /// The text for the feature in that row; null attributes are left out. Numbers are written in the
+  /// given format, or else with as many digits as needed. Empty if all attributes are null. White
+  /// space is reduced to single spaces, without any at the ends; text longer than kMostLetters is
+  /// cut and ends with an ellipsis.
   std::string text_of(const Attributes& attributes, std::uint32_t row,
                       const std::optional<NumberFormat>& format) const;
-  /// The same in the language, where something is known in it. `translated`: the joined values in
-  /// it; null: there are none.
+  /// The text with translations into the language where they are known. `translated`: the joined
+  /// values in that language; null: none.
   std::string translation_of(const Attributes& attributes, const JoinedValues* translated,
                              std::uint32_t row, const std::optional<NumberFormat>& format) const;
 
@@ -43,8 +43,8 @@ class LabelTemplate {
  private:
   struct Piece {
     std::string text;
-    int attribute = -1;    // number; -1: it is text
-    int translation = -1;  // of the attribute that says the same in the language; -1: there is none
+    int attribute = -1;    // index; -1: fixed text
+    int translation = -1;  // index of the translated attribute; -1: none
   };
   template <typename ValueOf>
   std::string text_of(const std::optional<NumberFormat>& format, const ValueOf& value_of) const;

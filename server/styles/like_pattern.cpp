@@ -5,8 +5,8 @@
 namespace trapeze {
 namespace {
 
-constexpr std::size_t kBits = 64;    // to a word
-constexpr std::size_t kBytes = 256;  // that there are
+constexpr std::size_t kBits = 64;    // per word
+constexpr std::size_t kBytes = 256;  // possible values of a byte
 
 bool continues_character(char c) {
   return (static_cast<unsigned char>(c) & 0xc0) == 0x80;
@@ -55,8 +55,8 @@ void LikePattern::note_places(Part& part) {
   }
 }
 
-/// The ends first; then every part in the middle may take the first place where it fits, as that
-/// leaves the most to those after it.
+/// Matches both ends first. Then each part in the middle may take the first position where it
+/// matches, since that leaves the most text to the parts after it.
 bool LikePattern::matches(std::string_view text) const {
   if (!fits_at_begin(parts_.front(), text)) return false;
   if (parts_.size() == 1) return text.empty();
@@ -67,7 +67,7 @@ bool LikePattern::matches(std::string_view text) const {
   return true;
 }
 
-/// Takes the part off the text, here and below, if it is there.
+/// Removes the part from the text if it matches, here and below.
 bool LikePattern::fits_at_begin(const Part& part, std::string_view& text) {
   std::size_t at = 0;
   for (std::size_t i = 0; i < part.bytes.size(); ++i) {
@@ -107,9 +107,9 @@ bool LikePattern::take_first(const Part& part, std::string_view& text) {
   return true;
 }
 
-/// All places of the part are followed at once, a bit for each: it is set while what has been read
-/// last fits the part up to there. (Baeza-Yates and Gonnet, "A new approach to text searching",
-/// 1992)
+/// Follows all positions of the part in parallel, with a bit for each that is set while the text
+/// read last matches the part up to there. (Baeza-Yates and Gonnet, "A new approach to text
+/// searching", 1992)
 bool LikePattern::take_first_with_any(const Part& part, std::string_view& text) {
   const std::size_t words = part.words();
   std::vector<std::uint64_t> fits(words);
@@ -122,7 +122,7 @@ bool LikePattern::take_first_with_any(const Part& part, std::string_view& text) 
       const std::uint64_t next = fits[w] << 1 | carry;
       const std::uint64_t any = part.any_places[w];
       carry = fits[w] >> (kBits - 1);
-      // What continues a character belongs to the _ that took its beginning.
+      // Continuation bytes belong to the _ that matched the first byte of the character.
       fits[w] = (next & (places[w] | (continues ? 0 : any))) | (continues ? fits[w] & any : 0);
     }
     if (!has_bit(fits, part.bytes.size() - 1)) continue;

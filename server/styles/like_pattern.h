@@ -1,8 +1,8 @@
-// The pattern of LIKE: % stands for anything, _ for any one character, and a backslash takes its
-// meaning from what follows it.
+// The pattern of LIKE: % matches anything, _ matches one character, and a backslash escapes the
+// next character.
 //
 // Patterns come from requests and texts may be long, so the time is bounded: linear in the length
-// of the text, times the length of a part between two % over 64 where that has a _.
+// of the text; for a part between two % that contains a _, times the length of the part over 64.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,18 @@ class LikePattern {
  public:
   explicit LikePattern(std::string_view pattern);
 
-  /// Whether the whole text fits. A character is a byte with the bytes that continue it in UTF-8.
+  /// Whether the pattern matches the whole text. A character is a byte with its UTF-8 continuation
+  /// bytes.
   bool matches(std::string_view text) const;
 
  private:
-  /// What stands between two %.
+  /// The bytes between two %.
   struct Part {
     std::string bytes;
-    std::vector<bool> is_any;  // by byte: it is a _, which stands for a character
+    std::vector<bool> is_any;  // by byte: whether it is a _, which matches a character
     bool has_any = false;
-    // Of a part in the middle that has a _: by byte of a text the places in the part where it may
-    // stand as itself, and the places of _, as sets of bits.
+    // For a part in the middle with a _: for each byte value, the positions in the part where it
+    // occurs literally, and the positions of _, as bit sets.
     std::vector<std::uint64_t> places_of;
     std::vector<std::uint64_t> any_places;
 

@@ -1,4 +1,4 @@
-// The table of query parameters as docs/styling.md has it.
+// The table of query parameters in docs/styling.md.
 #pragma once
 
 #include <string>

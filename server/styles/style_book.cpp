@@ -27,7 +27,7 @@ Problem unknown_fonts(const std::string& name, const std::vector<std::string>& k
 }
 
 std::size_t memory_of_text(std::string_view canonical_text) {
-  constexpr std::size_t kOverhead = 512;  // of an entry and the values of its settings, about
+  constexpr std::size_t kOverhead = 512;  // approximate, for an entry and its values
   return kOverhead + 4 * canonical_text.size();
 }
 

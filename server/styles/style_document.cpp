@@ -14,17 +14,17 @@
 namespace trapeze {
 namespace {
 
-// What a layer of a MapLibre style says that is of no concern here.
+// Members of a MapLibre style layer that do not matter here.
 constexpr std::array<std::string_view, 4> kIgnored = {"id", "metadata", "source", "source-layer"};
 
-// Looking a member up takes time of their number: so many are read in milliseconds. 30 layers with
-// all parameters and 64 classes each have 2800.
+// Looking up a member takes time proportional to their number: this many are read in milliseconds.
+// 30 layers with all parameters and 64 classes each have 2800.
 constexpr int kMaxMembers = 4096;
 constexpr int kMaxDepth = 8;
 
 struct TooMuch {};
 
-/// Nothing if it is larger than any style; discarded if it is not JSON.
+/// Nothing if it is larger than any style; a discarded value if it is not JSON.
 std::optional<Json> parse_json(std::string_view text) {
   int members = 0;
   const auto count = [&members](int depth, Json::parse_event_t event, const Json&) {
@@ -47,7 +47,7 @@ std::string class_value_text(std::string_view text) {
   return text == "*" || text == "null" ? std::string(text) : single_quoted(text);
 }
 
-/// As the value is written in a query; nothing for what has no place there.
+/// The value as written in a query; nothing if a query cannot contain it.
 std::optional<std::string> scalar_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number_unsigned()) return fmt::format("{}", value.get<std::uint64_t>());
@@ -83,7 +83,7 @@ std::optional<std::string> value_text(const StyleParameter& parameter, const Jso
   return scalar_text(value);
 }
 
-/// Collects the pairs of a query from a document.
+/// Collects query pairs from a document.
 class DocumentReader {
  public:
   std::optional<Problem> read(const Json& object, const std::string& layer) {

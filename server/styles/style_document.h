@@ -1,5 +1,5 @@
-// Styles as JSON documents: the parameters of the query by their names, or what a fill layer of a
-// MapLibre style says about its paint.
+// Styles as JSON documents: the query parameters by name, or the paint of a fill layer of a
+// MapLibre style.
 #pragma once
 
 #include <string>
@@ -15,13 +15,13 @@ namespace trapeze {
 ///   {"fill": "#cde", "stroke-width": 2, "classes": {"FRA": "red", "*": "silver"},
 ///    "layers": {"water": {"fill": "navy"}}}
 ///
-/// Lists may be arrays; layers may be named before parameters, too: "water.fill". A layer of a
-/// MapLibre style of type "fill", or its paint alone, is understood as far as its fill-color,
-/// fill-opacity and fill-outline-color go, if they are no expressions. The problem, 400, names what
-/// is not understood: nothing is left out in silence.
+/// Lists may be arrays; parameters may also be prefixed with a layer: "water.fill". A layer of a
+/// MapLibre style of type "fill", or its paint alone, is supported as far as its fill-color,
+/// fill-opacity and fill-outline-color go, if they are not expressions. The problem, 400, names
+/// what is not understood: nothing is ignored silently.
 Result<StyleQuery> parse_style_document(std::string_view text);
 
-/// The same style as a document.
+/// The style as a document.
 std::string style_document(const StyleQuery& style);
 
 }  // namespace trapeze

@@ -23,9 +23,9 @@
 namespace trapeze {
 namespace {
 
-// The greatest tolerance that a request may ask for: half the side of a tile would leave nothing.
+// The maximum tolerance of a request: half the side of a tile would leave nothing.
 constexpr double kMaxSimplify = 64;
-constexpr std::size_t kMaxClasses = 253;  // by value: with two more, and one not drawn, a byte
+constexpr std::size_t kMaxClasses = 253;  // by value; with two more and "not drawn", fits a byte
 constexpr std::size_t kMaxBreaks = 63;
 constexpr std::size_t kMaxIds = 256;
 constexpr std::size_t kMaxNameLength = 128;
@@ -36,7 +36,7 @@ constexpr std::array<std::string_view, 2> kYesOrNoWords = {"no", "yes"};
 
 using Type = ParameterType;
 
-// They make sense together only.
+// These are only meaningful together.
 constexpr std::array kClassingParameters = {ParameterId::breaks, ParameterId::classes,
                                             ParameterId::color_by, ParameterId::ramp};
 
@@ -381,7 +381,7 @@ std::optional<double> parse_number(std::string_view text, double min, double max
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  // Written so that NaN fails; adding 0 turns -0 into 0, which would be a second way to say it.
+  // Also rejects NaN. Adding 0 turns -0 into 0, so that 0 has one form only.
   if (!(number >= min && number <= max)) return std::nullopt;
   return number + 0.0;
 }
@@ -410,7 +410,7 @@ std::optional<ParameterValue> parse_numbers(const StyleParameter& parameter,
   return numbers;
 }
 
-/// Dashes must leave something to draw.
+/// At least one length must be greater than 0.
 std::optional<ParameterValue> parse_dashes(const StyleParameter& parameter, std::string_view text) {
   const auto dashes = parse_numbers(parameter, text);
   if (!dashes) return std::nullopt;
@@ -455,7 +455,7 @@ std::optional<ParameterValue> parse_words(std::string_view text, KnownWords know
   return canonical;
 }
 
-/// Takes a value in single quotes, doubled within, off the beginning of `text`.
+/// Removes a value in single quotes, with quotes inside doubled, from the beginning of `text`.
 std::optional<std::string> take_quoted(std::string_view& text) {
   std::string value;
   for (std::size_t i = 1; i < text.size(); ++i) {
@@ -471,7 +471,7 @@ std::optional<std::string> take_quoted(std::string_view& text) {
   return std::nullopt;
 }
 
-/// Takes "value:" off the beginning of `text`.
+/// Removes "value:" from the beginning of `text`.
 std::optional<ColourClass> take_class_value(std::string_view& text) {
   ColourClass parsed;
   if (text.starts_with('\'')) {
@@ -492,8 +492,8 @@ std::optional<ColourClass> take_class_value(std::string_view& text) {
   return parsed;
 }
 
-/// Takes a colour off the beginning of `text`, and the comma after it. Commas between the brackets
-/// of rgb() belong to the colour.
+/// Removes a colour, and the comma after it, from the beginning of `text`. Commas between the
+/// parentheses of rgb() belong to the colour.
 std::optional<Rgba> take_colour(std::string_view& text) {
   const std::size_t comma = text.find(',');
   const std::size_t bracket = text.find('(');
@@ -504,7 +504,7 @@ std::optional<Rgba> take_colour(std::string_view& text) {
     end = std::min(text.find(',', close), text.size());
   }
   const auto colour = parse_colour(text.substr(0, end));
-  // A comma at the end would promise another class.
+  // A trailing comma would need another class after it.
   if (end + 1 == text.size()) return std::nullopt;
   text.remove_prefix(std::min(end + 1, text.size()));
   return colour;
@@ -566,7 +566,7 @@ std::string format_class(const ColourClass& colour_class) {
   return (is_plain ? value : single_quoted(value)) + ":" + colour;
 }
 
-/// Calls `format` with each of the items, and puts commas between.
+/// Calls `format` for each item and joins the results with commas.
 template <typename Items, typename Format>
 std::string join_formatted(const Items& items, Format format) {
   std::string text;
@@ -579,7 +579,7 @@ std::string join_formatted(const Items& items, Format format) {
 
 struct Formatter {
   std::string operator()(Rgba colour) const { return to_hex(colour); }
-  // The shortest text that reads back the same.
+  // The shortest text that is parsed as the same number.
   std::string operator()(double number) const { return fmt::format("{}", number); }
   std::string operator()(const std::string& text) const { return text; }
   std::string operator()(const std::vector<double>& numbers) const {
@@ -613,7 +613,7 @@ struct SettingName {
   const StyleParameter* parameter = nullptr;
 };
 
-/// The parameter is null for a name that means nothing to these layers.
+/// The parameter is null if the name is unknown for these layers.
 SettingName resolve_name(std::string_view name, std::span<const std::string> layers) {
   const std::size_t dot = name.find('.');
   if (dot == std::string_view::npos) return {{}, find_style_parameter(name)};
@@ -624,7 +624,7 @@ SettingName resolve_name(std::string_view name, std::span<const std::string> lay
   return {layer, parameter};
 }
 
-/// How the sentence about an unknown name ends.
+/// The end of the sentence about an unknown name.
 std::string reason_or_suggestion(std::string_view name, std::span<const std::string> layers,
                                  const std::vector<std::string>& known) {
   std::string suggestion = suggestion_or_stop(name, known);

@@ -1,5 +1,5 @@
-// The query parameters that style a tile: one table from which the parser, the canonical form, the
-// error bodies, the OpenAPI document and the table of docs/styling.md come.
+// The query parameters that style a tile: a single table from which the parser, the canonical form,
+// the error bodies, the OpenAPI document and the table of docs/styling.md are derived.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 namespace trapeze {
 
-/// In the order of the table, which is the order of names.
+/// In the order of the table, which is sorted by name.
 enum class ParameterId : std::uint8_t {
   background,
   breaks,
@@ -83,8 +83,8 @@ enum class ParameterType : std::uint8_t {
   breaks,    // numbers, each greater than the one before, or a BreakRule
   word,      // one of StyleParameter::words
   words,     // some of them, separated by commas, in any order
-  name,      // of a property
-  ramp,      // the name of a ramp of colours
+  name,      // of an attribute
+  ramp,      // the name of a colour ramp
   ids,       // integers, separated by commas, in any order
   classes,   // value:colour, separated by commas
   filter,    // CQL2 text
@@ -101,21 +101,22 @@ struct StyleParameter {
   ParameterId id;
   std::string_view name;
   ParameterType type;
-  double min = 0;  // of a number, or of each of several
+  double min = 0;  // of a number, or of each number of a list
   double max = 0;
-  std::size_t max_items = 0;                     // of a list
+  std::size_t max_items = 0;                     // in a list
   std::span<const std::string_view> words = {};  // in alphabetical order
-  std::string_view default_text = {};            // in words
-  bool is_per_layer = true;                      // may be written layer.name= too
+  std::string_view default_text = {};            // as words
+  bool is_per_layer = true;                      // may also be written layer.name=
   std::string_view description = {};
 };
 
-/// One class of features, by the value of a property. Values are text until the property is known.
+/// One class of features, by the value of an attribute. Values are text until the attribute is
+/// known.
 struct ColourClass {
   enum class Kind : std::uint8_t {
     value,
-    null,    // where the property has no value; written null
-    others,  // all that is in no class; written *
+    null,    // no value; written null
+    others,  // not in any class; written *
   };
   Kind kind = Kind::value;
   std::string value;
@@ -124,7 +125,7 @@ struct ColourClass {
   friend bool operator==(const ColourClass&, const ColourClass&) = default;
 };
 
-/// A table by its name or id, and the table itself once it was found among those that are posted.
+/// A table by its name or id, and the table itself once it was found among the posted ones.
 struct TableChoice {
   std::string name;
   std::shared_ptr<const ValueTable> table = {};
@@ -132,29 +133,30 @@ struct TableChoice {
   friend bool operator==(const TableChoice& a, const TableChoice& b) { return a.name == b.name; }
 };
 
-/// Words are in the order of the table, each once, separated by commas; ids ascend, each once.
+/// Words are in the order of the table, without duplicates, separated by commas; ids are ascending,
+/// without duplicates.
 using ParameterValue =
     std::variant<Rgba, double, std::string, std::vector<double>, std::vector<std::int64_t>,
                  std::vector<ColourClass>, std::shared_ptr<const Filter>, BreakRule, NumberFormat,
                  TableChoice>;
 
-/// The parameters that requests can set, in order of names.
+/// The parameters that requests can set, sorted by name.
 std::span<const StyleParameter> style_parameters();
 const StyleParameter& style_parameter(ParameterId id);
-/// Whether it is one of those that put features into classes by a property.
+/// Whether it is one of the parameters that put features into classes by an attribute.
 bool is_classing_parameter(ParameterId id);
-/// Null if there is none of that name.
+/// Null if there is no parameter of that name.
 const StyleParameter* find_style_parameter(std::string_view name);
 
-/// Nothing if `text` is not what the parameter takes.
+/// Nothing if `text` is not a valid value of the parameter.
 std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
                                               std::string_view text);
-/// The canonical text, which parse_parameter() reads back as the same value.
+/// The canonical text, which parse_parameter() parses as the same value.
 std::string format_value(const ParameterValue& value);
-/// "a number from 0 to 1".
+/// For example "a number from 0 to 1".
 std::string describe_values(const StyleParameter& parameter);
 
-/// A name that any query may hold, with any value: so that a URL can be made new to caches.
+/// A name that any query may contain, with any value, to make a URL unique for caches.
 constexpr std::string_view kFreeParameter = "_";
 
 /// One parameter set by a request, for all layers (`layer` empty) or for one.
@@ -164,42 +166,43 @@ struct StyleSetting {
   ParameterValue value;
 };
 
-/// The style that a query asks for: settings in the order (layer, parameter), each at most once.
-/// Styles that are named come from a StyleBook, and are put under a query by over().
+/// The style set by a query: settings in the order (layer, parameter), each at most once. Named
+/// styles come from a StyleBook and are added by over().
 class StyleQuery {
  public:
   StyleQuery() = default;
 
-  /// A problem, 400, is a name that is neither PARAMETER nor LAYER.PARAMETER of one of `layers`,
-  /// nor among `others`, which are read elsewhere; a parameter that is given twice, or is set to
-  /// what it does not take. `style` and kFreeParameter are passed over.
+  /// A problem, 400, is a name that is neither PARAMETER nor LAYER.PARAMETER for one of `layers`,
+  /// nor one of `others`, which are read elsewhere; a parameter that is given twice; or an invalid
+  /// value. `style` and kFreeParameter are ignored.
   static Result<StyleQuery> parse(std::span<const QueryPair> pairs,
                                   std::span<const std::string> layers,
                                   std::span<const std::string_view> others = {});
 
   std::span<const StyleSetting> settings() const { return settings_; }
-  /// What holds for `layer`: its own setting, else the one for all layers, else null.
+  /// The value for `layer`: its own setting, else the one for all layers, else null.
   const ParameterValue* find(std::string_view layer, ParameterId parameter) const;
   std::optional<ParameterValue> value_for(std::string_view layer, ParameterId parameter) const;
-  /// This style for one layer, and, where it says nothing, `defaults`, which are for all layers.
-  /// Rules that put features into classes are taken as a whole or not at all.
+  /// This style for one layer, completed from `defaults`, which are for all layers. Rules that put
+  /// features into classes are taken as a whole or not at all.
   StyleQuery with_defaults(const std::string& layer, const StyleQuery& defaults) const;
-  /// This style and, where it is silent, what `style` sets for all layers or for one of `layers`. A
-  /// setting for one layer is not silenced by one for all. Rules that put features into classes are
-  /// taken as a whole or not at all.
+  /// This style, completed with what `style` sets for all layers or for one of `layers`. A setting
+  /// here for all layers does not override one of `style` for a single layer. Rules that put
+  /// features into classes are taken as a whole or not at all.
   StyleQuery over(const StyleQuery& style, std::span<const std::string> layers) const;
-  /// The same with the tables that `find` has for the names of settings; it answers with null for a
-  /// name that it does not know.
+  /// The same with the tables that `find` returns for the table names in settings; it returns null
+  /// for an unknown name.
   using FindTable = std::function<std::shared_ptr<const ValueTable>(const std::string& name)>;
   StyleQuery with_tables(const FindTable& find) &&;
-  /// The settings as a query has them, not encoded.
+  /// The settings as query pairs, not percent-encoded.
   std::vector<QueryPair> pairs() const;
-  /// The canonical query string: equal styles written differently give the same text.
+  /// The canonical query string: equal styles that are written differently give the same text.
   std::string canonical_text() const;
 
  private:
   const StyleSetting* find_setting(std::string_view layer, ParameterId parameter) const;
-  /// Whether it holds that setting, or, of the rules for classes, any for that layer.
+  /// Whether it contains that setting or, if that is one of the rules for classes, any such rule
+  /// for that layer.
   bool sets(const StyleSetting& setting) const;
 
   std::vector<StyleSetting> settings_;

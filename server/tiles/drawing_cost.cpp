@@ -21,31 +21,32 @@ std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const 
   return edges * sides + stroke.most_values(edges, view, scale) / kPixelsPerSide;
 }
 
-/// How many features over each other can be told from each other, at most; 0 if all that are
-/// painted are opaque.
+/// How many overlapping features can be distinguished at most; 0 if all painted features are
+/// opaque.
 double depth_of(const LayerStyle& style) {
   double depth = 0;
   for (const ClassPaint& paint : style.paints) {
     if (paint.fill.a == 0 || paint.fill.a == 255) continue;
-    const double share = 1 - paint.fill.a / 255.0;  // that is seen through one
+    const double share = 1 - paint.fill.a / 255.0;  // share that shows through one feature
     depth = std::max(depth, std::log(double{VisibleParts::kLeastShare}) / std::log(share));
   }
   return depth;
 }
 
-/// About how much is selected of a layer.
+/// Approximate amounts that a layer's selection contains.
 struct Amounts {
   std::uint64_t trapezoids = 0;
   std::uint64_t horizontal_edges = 0;
   std::uint64_t grains = 0;
-  std::uint64_t pairs = 0;        // of features over each other, in all of the layer
-  std::uint64_t pairs_along = 0;  // of these, those whose boundaries run along each other
-  std::uint64_t features = 0;     // likewise
+  std::uint64_t pairs = 0;        // of overlapping features, in the whole layer
+  std::uint64_t pairs_along = 0;  // those whose boundaries run along each other
+  std::uint64_t features = 0;     // in the whole layer
 };
 
-/// Of that many trapezoids, by those that lie over them. What is seen through others is cut up by
-/// all of them, so that its parts grow by the square of how many they are. The features are those
-/// of the layer with the test of topology: the one without has no table of them.
+/// The cost of cutting that many trapezoids by overlapping ones. A trapezoid that shows through
+/// others is cut by all of them, so the number of parts grows with the square of their number. The
+/// counts are those of the layer with the topology test; the layer without it has no table of
+/// overlaps.
 std::uint64_t cost_of_cuts(const Amounts& amounts, const LayerStyle& style) {
   const std::uint64_t trapezoids = amounts.trapezoids;
   const std::uint64_t pairs = (is_plain(style) ? amounts.pairs_along : amounts.pairs) / 2;
@@ -86,8 +87,8 @@ double share_of(const Box& box, const Box& within) {
   return all > 0 ? common / all : 0;
 }
 
-/// By what the parts say of themselves, as if it were spread evenly over each: opening them would
-/// take longer than this may.
+/// Estimated from the descriptions of the parts, as if their contents were evenly spread: opening
+/// the parts would take longer than this function may.
 Amounts amounts_of_parts(const TilePlan& plan, const LayerPaint& paint, const View& view) {
   const Layer::Selection selection = selection_of(plan, paint, view);
   const Level resolution = std::min(selection.level, selection.pixel_level);

@@ -1,9 +1,9 @@
-// What a tile costs to draw, known before anything is drawn.
+// Estimates what a tile costs to draw, before anything is drawn.
 //
-// The unit is the side of a trapezoid that is put into a picture, of which a worker draws some 25
-// million a second (software renderer, one core of 2.5 GHz). An edge of an outline costs several, a
-// grain of dust that is told by class one, and so do kPixelsPerSide values of pixels that outlines,
-// masks and colours touch.
+// The unit is one side of a trapezoid drawn into a picture. A worker draws about 25 million of
+// these a second (software renderer, one core at 2.5 GHz). An edge of an outline costs several
+// units. A grain of dust whose class has to be determined costs one, and so do kPixelsPerSide pixel
+// values touched by outlines, masks and colours.
 //
 // Thread-safety: any number of threads.
 #pragma once
@@ -18,15 +18,15 @@ constexpr std::uint64_t kPixelsPerSide = 16;
 constexpr std::uint64_t kSidesPerOutlineEdge = 4;
 constexpr std::uint64_t kSidesPerDashedEdge = 8;
 constexpr std::uint64_t kSidesPerRoundedTrapezoid = 40;  // of its corners, sides of new trapezoids
-constexpr std::uint64_t kSidesPerGrownTrapezoid = 120;   // looking around, by how far that is:
-constexpr std::uint64_t kSidesPerGrownPixel = 40;        // of the width, so many more of each
+constexpr std::uint64_t kSidesPerGrownTrapezoid = 120;   // to search its surroundings, which
+constexpr std::uint64_t kSidesPerGrownPixel = 40;        // grow by this per pixel of the width
 constexpr std::uint64_t kSidesPerPartSeenThrough = 64;
 constexpr std::uint64_t kSidesPerProjectedTrapezoid = 2;  // in plate carree
-constexpr std::uint64_t kSidesPerMarkedTrapezoid = 32;    // of debug=mesh and the like
+constexpr std::uint64_t kSidesPerMarkedTrapezoid = 32;    // for debug=mesh and similar
 
-/// Estimated from the indexes alone, see MeshIndex::estimate(): microseconds for most tiles,
-/// milliseconds for millions of trapezoids. Never less for a picture that shows more, or has wider
-/// lines.
+/// An estimate from the indexes alone, see MeshIndex::estimate(): takes microseconds for most
+/// tiles, milliseconds for millions of trapezoids. Never lower for a picture that shows more or has
+/// wider lines.
 std::uint64_t drawing_cost(const TilePlan& plan);
 
 }  // namespace trapeze

@@ -15,7 +15,7 @@
 namespace trapeze {
 namespace {
 
-/// At least so many cells wide and high, around the same middle.
+/// The box widened to at least that many cells, around the same centre.
 Box widened(const Box& box, std::int64_t width, std::int64_t height) {
   const auto widen = [](std::int32_t& min, std::int32_t& max, std::int64_t side) {
     const std::int64_t missing = side - (std::int64_t{max} - min);
@@ -31,7 +31,7 @@ Box widened(const Box& box, std::int64_t width, std::int64_t height) {
   return wide;
 }
 
-/// The box and so many cells around it, as far as there is a grid.
+/// The box with a margin of that many cells, as far as the grid extends.
 Box with_margin(const Box& box, double margin) {
   if (box.is_empty()) return box;
   const auto cells = static_cast<std::int64_t>(std::ceil(margin));
@@ -44,7 +44,7 @@ Box with_margin(const Box& box, double margin) {
 
 constexpr unsigned kStepsBetweenChecks = 16'384;
 
-constexpr double kLeastInk = 0.5 / 255;  // what is less cannot be seen
+constexpr double kLeastInk = 0.5 / 255;  // less ink cannot be seen
 
 double length_between(Point a, Point b) {
   const double x = static_cast<double>(b.x) - a.x;
@@ -52,8 +52,7 @@ double length_between(Point a, Point b) {
   return std::sqrt(x * x + y * y);
 }
 
-/// Sorts the items and leaves one of those that are equal. Where they are dense, in the time that
-/// it takes to look at them.
+/// Sorts the items and removes duplicates. Takes linear time where they are dense.
 void sort_and_part(std::vector<std::uint32_t>& items) {
   constexpr std::size_t kBits = 64;
   if (items.empty()) return;
@@ -82,12 +81,12 @@ void add(const Digest& digest, ContentHash& hash) {
   hash.add(digest.high);
 }
 
-/// The number of a feature's class; 0 if all are drawn alike.
+/// The class number of a feature; 0 if all are drawn the same way.
 std::uint8_t number_of(const FeatureClasses* classes, std::uint32_t row) {
   return classes == nullptr ? std::uint8_t{0} : (*classes)[row];
 }
 
-/// What is seen of a border on both of its sides is there once, with the greater share.
+/// A border that is visible on both sides is listed once, with the greater share.
 void take_once(std::vector<SeenEdge>& seen) {
   const auto piece = [](const SeenEdge& of) {
     return std::tuple(of.edge, of.from.x, of.from.y, of.to.x, of.to.y);
@@ -103,7 +102,7 @@ void take_once(std::vector<SeenEdge>& seen) {
 
 InkOfLoops::InkOfLoops(const Stroke& stroke, const View& view, double scale)
     : stroke_(stroke), view_(view), scale_(scale) {
-  // Of the side of a square as large as a pixel of scale 1.
+  // In units of the side of a square as large as a pixel at scale 1.
   const double cells = view.cells_per_pixel * std::sqrt(view.stretch) * scale;
   for (int size = 0; size < kLoopSizes; ++size) {
     by_size_[static_cast<std::size_t>(size)] =
@@ -182,7 +181,7 @@ void LayerDrawing::ClassDrawing::add_part(const MeshView& mesh, const TrapezoidP
   made_trapezoids.push_back({v + 4, v + 5, e, e + 1});
 }
 
-/// Puts in place of the parts what they are in the picture.
+/// Replaces the parts by their projection into the picture.
 void LayerDrawing::ClassDrawing::project(const View& view) {
   projected.begin(view.cells_per_row(), view.box());
   for (const MeshPart& part : parts) projected.add(part.mesh, part.ranges);
@@ -194,7 +193,7 @@ void LayerDrawing::ClassDrawing::project(const View& view) {
   parts.push_back({mesh, {&all_made, 1}});
 }
 
-// The edges of which a feature has one side only, and no place in common with others on the other.
+// The edges that a feature has on one side only.
 void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uint32_t>& edges) {
   std::ranges::sort(sides);
   for (std::size_t i = 0; i < sides.size();) {
@@ -208,7 +207,7 @@ void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uin
   }
 }
 
-/// What the view shows, and so many pixels around it.
+/// The box of the view with a margin of that many pixels.
 Box box_around(const View& view, double reach) {
   return view.projection == Projection::plate_carree
              ? view.box_around(reach)
@@ -279,8 +278,9 @@ void LayerDrawing::add_piece(const DrawnPiece& piece, const Layer::Selection& se
   for (std::size_t i = 0; i < class_count_; ++i) classes_[i].end_piece(*layer_);
 }
 
-// All features count, also those that are not drawn: which are must not matter to the shape of
-// others. What lies over something else is drawn as far as it is seen, and stays as it is.
+// All features count, including those not drawn: which features are drawn must not affect the shape
+// of others. Features that overlap others are drawn as far as they are visible, and keep their
+// shape.
 void LayerDrawing::find_corners(double scale, std::span<const DrawnPiece> pieces,
                                 const Layer::Selection& selection, DrawingTools& tools) const {
   Layer::Selection polygons = selection;
@@ -313,13 +313,14 @@ void LayerDrawing::find_corners(double scale, std::span<const DrawnPiece> pieces
       tools.corners.add_edge(edge, is_sharp(layer.feature_of(i)) || is_cut(edge));
     });
   }
-  // Around others not everything has been added. Their curves begin too far away to be seen.
+  // Beyond this, not all neighbours have been added. The curves there begin too far away to be
+  // seen.
   const double radius = style().smooth * scale;
   const Box tips = box_around(view_, style().reach(scale) - radius);
   tools.corners.find({radius, view_.shorter_side(), tips});
 }
 
-// Where both sides of a border are drawn alike, it does not show in the areas.
+// A border whose two sides are drawn the same way does not show in the areas.
 void LayerDrawing::round_corners(double scale, std::span<const DrawnPiece> pieces,
                                  const Layer::Selection& selection, DrawingTools& tools) {
   find_corners(scale, pieces, selection, tools);
@@ -341,8 +342,8 @@ void LayerDrawing::round_corners(double scale, std::span<const DrawnPiece> piece
   }
 }
 
-// All features count, as with corners. What lies over something else neither grows nor is in the
-// way.
+// All features count, as for corners. Features that overlap others neither grow nor obstruct
+// growth.
 void LayerDrawing::find_growth(double scale, std::span<const DrawnPiece> pieces,
                                const Layer::Selection& selection, DrawingTools& tools) const {
   Layer::Selection polygons = selection;
@@ -397,7 +398,7 @@ void LayerDrawing::grow(double scale, std::span<const DrawnPiece> pieces,
   }
 }
 
-// Where something has grown over what is wider, that is not drawn.
+// Where a grown feature covers a wider one, the wider one is not drawn.
 void LayerDrawing::give_way(ClassDrawing& drawing, DrawingTools& tools) const {
   if (drawing.is_beneath || tools.exaggeration.triangles().empty()) return;
   const Box box = view_.box();
@@ -478,7 +479,7 @@ void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Sel
   if (has_stack_) add_stack(classes, selection, tools);
 }
 
-// Which features lie over each other here must not hang on what the index selects beyond the box.
+// Which features overlap here must not depend on what the index selects beyond the box.
 void LayerDrawing::leave_those_that_meet(const Box& box,
                                          std::vector<TrapezoidRange>& ranges) const {
   std::vector<TrapezoidRange> left;
@@ -494,8 +495,8 @@ bool LayerDrawing::is_raised(std::uint8_t number) const {
   return number == style().classing.class_of_highlighted();
 }
 
-// Whether features of the layer lie over each other here. Of one colour they are cut up as well:
-// where their edges run along each other, their areas together would be more than they cover.
+// Whether features of the layer overlap here. Features of one colour are cut as well: where their
+// edges run along each other, their areas would add up to more than they cover.
 bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Selection& selection,
                               DrawingTools& tools) {
   if (layer_->overlaps().empty()) return false;
@@ -521,7 +522,7 @@ bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Select
   return tools.stack.settle();
 }
 
-// Where the layer's features lie over each other, each is drawn as far as it is seen.
+// Where the layer's features overlap, draws the visible part of each.
 void LayerDrawing::add_stack(const FeatureClasses* classes, const Layer::Selection& selection,
                              DrawingTools& tools) {
   using RowAndEdge = std::pair<std::uint32_t, std::uint32_t>;
@@ -583,7 +584,7 @@ GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selectio
   return has_classes ? GrainIndex::Births{0, selection.level} : selection.later_births();
 }
 
-/// The box, as large as the least that is drawn.
+/// The box, enlarged to the smallest size that is drawn.
 Box LayerDrawing::least_around(const Box& box) const {
   const double side = least_side_ * view_.shorter_side();
   const double middle = (static_cast<double>(box.min_y) + box.max_y) / 2;
@@ -592,12 +593,11 @@ Box LayerDrawing::least_around(const Box& box) const {
                  static_cast<std::int64_t>(std::ceil(high)));
 }
 
-// There are no more of them, in one class, than pixels.
+// In one class, there are no more of them than pixels.
 void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureClasses* classes,
                               DrawingTools& tools) {
   const bool is_kept = paint_->small == SmallPolygons::keep;
-  // A mote may reach into the next pixel, and a small polygon that is drawn larger into the next
-  // picture.
+  // A mote may reach into the next pixel, and an enlarged small polygon into the next picture.
   Layer::Selection around = selection;
   around.box = with_margin(selection.box, 2 * least_side_ * view_.longer_side());
   if (classes == nullptr && is_kept) {
@@ -610,7 +610,7 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureCl
                  classes == nullptr ? std::span<const std::uint8_t>() : *classes, tools.shapes);
 }
 
-// Of all pieces.
+// For all pieces.
 void LayerDrawing::add_shapes(DrawingTools& tools) {
   const bool is_kept = paint_->small == SmallPolygons::keep;
   for (const ClassMote& mote : tools.shapes.motes) {
@@ -624,7 +624,7 @@ void LayerDrawing::add_shapes(DrawingTools& tools) {
   }
 }
 
-// One that fills the box does so whatever others add, but for dust, which may take area away.
+// If one piece fills the box, so do all together, unless there is dust, which may remove area.
 bool LayerDrawing::fills_box(const Layer::Selection& selection, const ClassDrawing& drawing) {
   const std::span pieces(drawing.pieces.data(), drawing.piece_count);
   const auto have_dust = [](const auto& piece) { return piece.layer->have_dust(piece.ranges); };
@@ -687,7 +687,7 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const InkOfL
   }
 }
 
-// Most edges are sides of several trapezoids, and some of these reach far out of the box.
+// Most edges are sides of several trapezoids, some of which reach far out of the box.
 void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& lines,
                               DrawingTools& tools) const {
   const MeshView& mesh = layer_->mesh();
@@ -729,7 +729,7 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
   lines.seen.clear();
 }
 
-// Of an edge between vertices of the piece at hand: edges that share one go on sharing it.
+// For an edge between vertices of the current piece: edges that share a vertex still share it.
 void LayerDrawing::take_points(OutlineEdge& line, Lines& lines) const {
   const std::span<const Point> vertices = layer_->mesh().vertices;
   line.from = lines.point_of(line.from, vertices[line.from]);
@@ -743,7 +743,7 @@ std::uint32_t LayerDrawing::Lines::point_of(std::uint32_t vertex, Point place) {
   return found->second;
 }
 
-// Lines that meet in a vertex meet in one point, so that they are joined there.
+// Lines that meet at a vertex must meet at one point, so that they are joined there.
 void LayerDrawing::project_side(const OutlineEdge& line, Lines& lines, DrawingTools& tools) const {
   const Point from = layer_->mesh().vertices[line.from];
   const Point to = layer_->mesh().vertices[line.to];
@@ -777,8 +777,8 @@ void LayerDrawing::PointsByPlace::clear() {
   numbers.clear();
 }
 
-// With the halves of the curves at both ends, where it meets the other edge that is rounded there;
-// or where it has moved, and as far as the other one, with which it is joined.
+// A rounded edge includes half of the curve at each end, up to where it meets the adjacent rounded
+// edge. A moved edge extends to the adjacent edge, with which it is joined.
 void LayerDrawing::trace_side(const OutlineEdge& line, std::uint32_t edge, Lines& lines,
                               DrawingTools& tools) const {
   using PointOnWay = PlateCarreeMesh::PointOnWay;
@@ -816,9 +816,9 @@ void LayerDrawing::project_seen(const OutlineEdge& line, const SeenEdge& seen, L
              lines.seen_points.points, lines.seen_edges);
 }
 
-/// Appends a line along the way, which was so long, from its first point to its last, with new ones
-/// between. Dashes are as long as in Web Mercator where the line runs along a parallel, and shorter
-/// where it does not.
+/// Appends a line along the way, whose length was `length`, from its first point to its last, with
+/// new points between. Dashes are as long as in Web Mercator where the line runs along a parallel,
+/// and shorter elsewhere.
 void LayerDrawing::append_way(const OutlineEdge& line, double length, std::uint32_t first,
                               std::uint32_t last, std::span<const PlateCarreeMesh::PointOnWay> way,
                               std::vector<Point>& points, std::vector<OutlineEdge>& edges) const {
@@ -848,7 +848,7 @@ std::span<const Point> LayerDrawing::points_of(const Lines& lines) const {
   return has_own ? std::span<const Point>(lines.points.points) : layer_->mesh().vertices;
 }
 
-// Of the piece of an edge between two points: its ink and its dashes. False if it is not seen here.
+// Sets ink and dashes for the piece of an edge between two points. False if it is not visible here.
 bool LayerDrawing::take_edge(std::uint32_t edge, Point from, Point to, const Box& box,
                              const InkOfLoops& ink, OutlineEdge& line) const {
   const MeshView& mesh = layer_->mesh();
@@ -902,8 +902,8 @@ void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_
   append_outer(in_common, lines.sides);
 }
 
-// Of a feature that has places in common with others, only some sides are edges of its outline:
-// those go to `in_common`, see append_outer(). Of all others, both are.
+// If the feature overlaps others, only some of its sides are edges of its outline: these go to
+// `in_common`, see append_outer(). For all other features, both sides are.
 void LayerDrawing::add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32_t>& edges,
                                 std::vector<SideOf>& in_common) const {
   const std::uint32_t row = layer_->feature_of(trapezoid);
@@ -914,7 +914,7 @@ void LayerDrawing::add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32
     return;
   }
   in_common.push_back({row, t.left, false});
-  if (t.left != t.right) in_common.push_back({row, t.right, true});  // else it is a level edge
+  if (t.left != t.right) in_common.push_back({row, t.right, true});  // otherwise it is a level edge
 }
 
 const LayerDrawing::ClassDrawing* LayerDrawing::only_class() const {
@@ -965,7 +965,8 @@ void LayerDrawing::forget_made(MaskRenderer& renderer) {
   }
 }
 
-// A pixel on the seam shows a part of each copy; a line that ends there is drawn beyond it in both.
+// A pixel on the seam shows a part of each copy; a line that ends there continues beyond it in
+// both.
 void LayerDrawing::take_over(LayerDrawing& copy) {
   const auto take = [](Mask& from, bool is_first, Mask& to, const auto& combine) {
     to = is_first ? std::move(from) : combine(to, from);
@@ -985,7 +986,7 @@ void LayerDrawing::take_over(LayerDrawing& copy) {
   }
 }
 
-// In the order in which they are painted.
+// In painting order.
 template <typename Visit>
 void LayerDrawing::for_each_painted(const Visit& visit) const {
   const auto visit_seen = [&visit](const ClassDrawing& drawing) {

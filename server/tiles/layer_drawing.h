@@ -1,6 +1,6 @@
-// What is drawn of one layer in one tile: the trapezoids of each class of features, the pattern
-// over them, and the outlines. A layer that is in several parts is drawn as if it were one: the
-// parts have no place in common, so their areas add up.
+// Draws one layer in one tile: the trapezoids of each class of features, the pattern over them, and
+// the outlines. A layer in several parts is drawn as if it were one: the parts do not overlap, so
+// their areas add up.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -31,25 +31,25 @@
 
 namespace trapeze {
 
-/// The share of ink for the outlines of loops, by their size.
+/// The share of ink of the outlines of loops, by loop size.
 class InkOfLoops {
  public:
-  /// In a picture of that scale. The stroke is referred to.
+  /// For a picture of that scale. Keeps a reference to the stroke.
   InkOfLoops(const Stroke& stroke, const View& view, double scale);
 
-  /// Where the grid has that y.
+  /// At that y of the grid.
   double of(LoopSize size, std::int32_t y) const;
 
  private:
   const Stroke& stroke_;
   View view_;
   double scale_;
-  std::array<double, kLoopSizes> by_size_{};  // where pixels are alike in all of the picture
+  std::array<double, kLoopSizes> by_size_{};  // if all pixels of the picture are the same size
 };
 
-/// What the drawings of one tile have in common. The memory is kept from tile to tile.
+/// Tools shared by the drawings of one tile. Their memory is reused from tile to tile.
 struct DrawingTools {
-  const Cancellation* cancellation = nullptr;  // of the tile; null: wanted whatever happens
+  const Cancellation* cancellation = nullptr;  // of the tile; null: cannot be cancelled
   ClassDust dust;
   FeatureStack stack;
   Stroker stroker;
@@ -58,64 +58,66 @@ struct DrawingTools {
   std::vector<Box> places;
   PlateCarreeMesh plate_carree;  // for outlines
   std::vector<PlateCarreeMesh::PointOnWay> way;
-  CornerRounding corners;     // of styles that round them
-  Exaggeration exaggeration;  // of styles with which something grows
+  CornerRounding corners;     // for styles that round them
+  Exaggeration exaggeration;  // for styles in which features grow
   std::vector<PlateCarreeMesh::PointOnWay> traced_way;
 };
 
-/// A layer, or a part of one, with the classes of its features: null if all are drawn alike.
+/// A layer, or a part of one, with the classes of its features. `classes` is null if all features
+/// are drawn the same way.
 struct DrawnPiece {
   const Layer* layer = nullptr;
   std::shared_ptr<const FeatureClasses> classes;
 };
 
-/// What of the layer is looked at: what lies in the view, and near it as far as outlines reach.
+/// Selects the features of the layer in the view, and around it as far as outlines reach.
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view);
 
-/// The dust that is gathered from grains, feature by feature, by when they were born.
+/// The births of the dust that is collected from grains, feature by feature.
 GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selection& selection);
 
-/// Whether all features are opaque and of one colour, without outlines: it does not matter which of
-/// two that overlap is drawn over the other.
+/// Whether all features are opaque, of one colour and without outlines, so that the drawing order
+/// of overlapping features does not matter.
 bool is_plain(const LayerStyle& style);
 
 class LayerDrawing {
  public:
-  /// Selects what is to be drawn of the world where it lies in the view, of which the drawing takes
-  /// a copy; of other copies of the world see views_of_copies(). `pieces` are what the layer
-  /// consists of there, see TilePlan::pieces_of(); they outlive the drawing. False if nothing of
-  /// the layer is seen here; the drawing must then not be used. Throws Cancelled.
+  /// Selects what to draw of the world inside the view; the drawing copies the view. For other
+  /// copies of the world, see views_of_copies(). `pieces` are the pieces of the layer there, see
+  /// TilePlan::pieces_of(); they must outlive the drawing. Returns false if nothing of the layer is
+  /// visible here; the drawing must not be used then. Throws Cancelled.
   bool select(const TilePlan& plan, const LayerPaint& paint, const View& view,
               std::span<const DrawnPiece> pieces, DrawingTools& tools);
 
-  /// Whether nothing below the layer can be seen.
+  /// Whether the layer hides everything below it.
   bool hides_all() const;
-  /// Whether every pixel has one colour, known without drawing.
+  /// Whether all pixels have the same colour, known without drawing.
   bool is_constant() const;
 
-  /// Adds all that decides what painted() will be: drawings that add the same are painted alike in
-  /// pictures of the same size, however their layers are numbered. `picture` is where the pattern
-  /// is placed, here and below: the same for all copies of the world.
+  /// Adds everything that determines painted(): drawings that add the same are painted the same in
+  /// pictures of the same size, however their layers are numbered. `picture` places the pattern,
+  /// here and below; it is the same for all copies of the world.
   void add_to(ContentHash& hash, const View& picture) const;
 
-  /// Appends the masks that have to be drawn; they look at memory of the drawing.
+  /// Appends the masks to draw; they refer to memory of the drawing.
   void add_tasks(const Cancellation* cancellation, std::vector<MaskTask>& tasks);
-  /// Places the pattern and draws outlines, for a picture of that scale. Throws Cancelled.
+  /// Places the pattern and draws the outlines for a picture of that scale. Throws Cancelled.
   void draw_details(const View& picture, double scale, DrawingTools& tools);
-  /// Releases what was made for this picture only.
+  /// Releases what was created for this picture only.
   void forget_made(MaskRenderer& renderer);
 
-  /// Whether they are of one layer, in two copies of the world.
+  /// Whether both are of the same layer, in two copies of the world.
   bool is_of_same_layer(const LayerDrawing& other) const { return paint_ == other.paint_; }
-  /// Takes over what has been drawn of the same layer in another copy of the world.
+  /// Adds what was drawn of the same layer in another copy of the world.
   void take_over(LayerDrawing& copy);
 
-  /// As it goes into the picture, once all has been drawn; looks at memory of the drawing.
+  /// The layer as it is composed into the picture, once everything is drawn. Refers to memory of
+  /// the drawing.
   PaintedLayer painted();
-  /// How far its boundary may be from the true one, in pixels.
+  /// The maximum distance of the drawn boundary from the true one, in pixels.
   double tolerance() const;
 
-  /// Of what was drawn: whether nothing of it is to be seen, and whether it covers all alike.
+  /// After drawing: whether nothing is visible, and whether the whole picture is covered evenly.
   bool is_empty() const;
   bool is_full() const;
 
@@ -129,26 +131,26 @@ class LayerDrawing {
   };
 
  private:
-  // The features of one class, or what shines of them through others that lie over them.
+  // The features of one class, or their parts that show through overlapping features.
   struct ClassDrawing {
     std::uint8_t number = 0;
     std::uint8_t alpha = 0;  // of the fill
     bool is_beneath = false;
-    bool is_full = false;                // covers the tile wholly and need not be drawn
-    bool is_drawn = false;               // its mask
-    std::vector<TrapezoidRange> ranges;  // of the piece at hand
+    bool is_full = false;                // covers the whole tile, so needs no drawing
+    bool is_drawn = false;               // whether its mask is drawn
+    std::vector<TrapezoidRange> ranges;  // of the current piece
     struct OfPiece {
       const Layer* layer = nullptr;
       std::vector<TrapezoidRange> ranges;
     };
-    std::vector<OfPiece> pieces;  // those that have been selected from, the first piece_count
+    std::vector<OfPiece> pieces;  // pieces with a selection; only the first piece_count count
     std::size_t piece_count = 0;
-    // A mesh made for this picture: small polygons, and parts of trapezoids.
+    // A mesh created for this picture: small polygons, and parts of trapezoids.
     std::vector<Point> made_vertices;
     std::vector<MeshEdge> made_edges;
     std::vector<MeshTrapezoid> made_trapezoids;
     TrapezoidRange all_made;
-    PlateCarreeMesh projected;  // all of it, if the picture is in plate carree
+    PlateCarreeMesh projected;  // all parts, if the picture is in plate carree
     std::vector<MeshPart> parts;
     Digest digest;  // of the mask, if it is drawn
     Mask mask;
@@ -165,29 +167,30 @@ class LayerDrawing {
     void add_part(const MeshView& mesh, const TrapezoidPart& part);
     void project(const View& view);
   };
-  // Points that edges between them have in common if they are joined.
+  // Points of edges; shared between edges if they are joined.
   struct PointsByPlace {
     std::vector<Point> points;
-    std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // by place, of the piece at hand
+    std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // by place, for the current piece
     bool is_joined = false;
 
-    /// The number of the point there: a new one if there is none, or if points are not joined.
+    /// The number of the point at that place: a new one if there is none, or if points are not
+    /// joined.
     std::uint32_t at(Point place);
     void clear();
   };
   // Outlines of one colour.
   struct Lines {
     Rgba colour;
-    // Edges of the mesh of the piece at hand, before they are taken once each.
+    // Edges of the current piece's mesh, with duplicates still to be removed.
     std::vector<std::uint32_t> sides;
     std::vector<OutlineEdge> edges;
-    // Of several pieces, in plate carree, with rounded corners, and where something has grown, the
-    // edges are between points of their own, some of which are vertices: by the numbers of those of
-    // the piece at hand, too.
+    // With several pieces, in plate carree, with rounded corners and where something has grown, the
+    // edges run between points of their own. Some of these are vertices: `point_of_vertex` maps
+    // vertex numbers of the current piece to them.
     PointsByPlace points;
     std::unordered_map<std::uint32_t, std::uint32_t> point_of_vertex;
-    // Of features that others lie over: what is seen of them, between points of its own.
-    std::vector<SeenEdge> seen;  // of the piece at hand
+    // The visible parts of the edges of features overlapped by others, between points of their own.
+    std::vector<SeenEdge> seen;  // of the current piece
     PointsByPlace seen_points;
     std::vector<OutlineEdge> seen_edges;
     Mask mask;
@@ -195,7 +198,7 @@ class LayerDrawing {
     std::uint32_t point_of(std::uint32_t vertex, Point place);
   };
 
-  // A trapezoid with the feature that it is a part of, and the class of that.
+  // A trapezoid with its feature and the class of that feature.
   struct Painted {
     std::uint32_t trapezoid = 0;
     std::uint32_t row = 0;
@@ -203,7 +206,7 @@ class LayerDrawing {
   };
 
   bool is_raised(std::uint8_t number) const;
-  /// The only one of which anything is painted; null if there are none or several.
+  /// The only class of which anything is painted; null if there are none or several.
   const ClassDrawing* only_class() const;
   const LayerStyle& style() const { return paint_->style; }
   bool is_projected() const { return view_.projection == Projection::plate_carree; }
@@ -270,12 +273,12 @@ class LayerDrawing {
                   std::vector<OutlineEdge>& edges) const;
 
   const LayerPaint* paint_ = nullptr;
-  const Layer* layer_ = nullptr;  // the piece at hand; afterwards the only one
+  const Layer* layer_ = nullptr;  // the current piece; afterwards the only one
   std::uint32_t piece_number_ = 0;
-  bool has_pieces_ = false;  // several of them
-  double least_side_ = 1;    // of what is drawn for a small polygon, in pixels
+  bool has_pieces_ = false;  // more than one
+  double least_side_ = 1;    // of a small polygon as it is drawn, in pixels
   View view_;
-  bool has_stack_ = false;            // features lie over each other here
+  bool has_stack_ = false;            // features overlap here
   std::deque<ClassDrawing> classes_;  // parts point into them
   std::size_t class_count_ = 0;
   std::vector<ClassDrawing*> by_number_;  // null: not met yet

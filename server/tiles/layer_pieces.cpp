@@ -10,7 +10,7 @@
 namespace trapeze {
 namespace {
 
-/// How far dust and small polygons that are drawn larger reach beyond their places, in pixels.
+/// How far dust and enlarged small polygons reach beyond their places, in pixels.
 constexpr double kReachOfDust = 4;
 
 Box widened(const Box& box, double by) {
@@ -48,7 +48,7 @@ std::vector<LayerPiece> pieces_in_view(const TilePlan& plan, const LayerPaint& p
   if (served.parts == nullptr) return {{&plan.layer_of(paint), served.revision}};
   std::vector<LayerPiece> pieces;
   for (const PreparedPart* part : parts_in_view(plan, paint, view)) {
-    const Layer* layer = part->layer().get();  // which the part keeps
+    const Layer* layer = part->layer().get();  // kept alive by the part
     if (layer == nullptr) throw std::runtime_error(part->problem());
     pieces.push_back({layer, part->summary().revision});
   }

@@ -17,7 +17,7 @@
 namespace trapeze {
 namespace {
 
-// Colours of layers that were given none: muted, told apart, readable over each other.
+// Colours of layers that have none configured: muted, distinct, readable on top of each other.
 constexpr std::array<Rgba, 8> kPalette = {{{0x7f, 0xa6, 0x87, 255},
                                            {0x6f, 0xa8, 0xc9, 255},
                                            {0xd9, 0x9b, 0x6c, 255},
@@ -26,11 +26,11 @@ constexpr std::array<Rgba, 8> kPalette = {{{0x7f, 0xa6, 0x87, 255},
                                            {0xc6, 0x7b, 0x82, 255},
                                            {0x62, 0xa6, 0xa0, 255},
                                            {0x94, 0x8b, 0x80, 255}}};
-/// The colour of the layer at `position` after those of the palette: hues at the golden angle,
-/// which stay apart however many there are.
+/// The colour of the layer at `position`, once the palette is used up: hues spaced by the golden
+/// angle, which stay distinct for any number of layers.
 Rgba hue_at(std::size_t position) {
   constexpr double kGoldenAngle = 137.50776405003785;
-  constexpr double kMiddle = 158;  // of the channels, and how far they go from it
+  constexpr double kMiddle = 158;  // of the channels, and the deviation from it
   constexpr double kReach = 46;
   const double degrees = std::fmod(static_cast<double>(position) * kGoldenAngle, 360);
   const auto channel = [&](double turned) {
@@ -43,7 +43,7 @@ Rgba hue_at(std::size_t position) {
 constexpr Rgba kHighlight{0xff, 0xcc, 0x00, 255};
 constexpr Rgba kBlack{0, 0, 0, 255};
 
-/// The settings of a query as they hold for one layer.
+/// The settings of a query that apply to one layer.
 class LayerSettings {
  public:
   LayerSettings(const StyleQuery& query, const std::string& layer) : query_(query), layer_(layer) {}
@@ -93,7 +93,7 @@ Stroke stroke_of(const LayerSettings& settings) {
       settings.has(ParameterId::stroke) || settings.has(ParameterId::stroke_width);
   stroke.width = settings.value_or(ParameterId::stroke_width, is_wanted ? 1.0 : 0.0);
   stroke.dashes = settings.value_or(ParameterId::stroke_dasharray, std::vector<double>());
-  if (stroke.dashes.size() % 2 == 1) {  // as in SVG: the list twice
+  if (stroke.dashes.size() % 2 == 1) {  // as in SVG, the list is repeated
     const std::vector<double> once = stroke.dashes;
     stroke.dashes.insert(stroke.dashes.end(), once.begin(), once.end());
   }
@@ -130,7 +130,7 @@ Problem contradiction(std::string_view detail, ParameterId id, const LayerSettin
           std::string(takes)};
 }
 
-/// What is wrong about which of the four are set.
+/// Checks which of the four settings are combined.
 std::optional<Problem> find_contradiction(const LayerSettings& settings) {
   const bool has_classes = settings.has(ParameterId::classes);
   const bool has_breaks = settings.has(ParameterId::breaks);
@@ -166,7 +166,7 @@ std::optional<FilterLiteral> read_number(const std::string& text) {
   return FilterLiteral(number);
 }
 
-/// The value as the type of the field has it; nothing if it cannot be one.
+/// The value converted to the type of the field; nothing if it cannot be converted.
 std::optional<FilterLiteral> read_as(FieldType type, const std::string& text) {
   switch (type) {
     case FieldType::integer:
@@ -179,18 +179,18 @@ std::optional<FilterLiteral> read_as(FieldType type, const std::string& text) {
   return std::nullopt;
 }
 
-/// What a layer's style is made of, step by step.
+/// The parts of a layer's style, step by step.
 struct Making {
   LayerSettings settings;
   const ServedLayer& served;
   const FeatureTable& features;
   Looking looking = Looking::for_drawing;
   double fill_opacity = 1;
-  Rgba others = kTransparent;  // with the opacity already
+  Rgba others = kTransparent;  // with the opacity applied
   LayerStyle style = {};
   std::vector<Rgba> fills = {};  // of the classes by value
 
-  std::shared_ptr<DerivedValues> own_derived = {};  // where the layer keeps nothing
+  std::shared_ptr<DerivedValues> own_derived = {};  // if the layer keeps none
 
   Attributes attributes() const { return {features, style.classing.joined}; }
   DerivedValues& derived() {
@@ -200,7 +200,8 @@ struct Making {
   }
 };
 
-/// What takes all features at once is not told of a layer of many parts.
+/// The problem for a setting that needs all features at the same time, which layers in many parts
+/// do not offer.
 Problem not_in_parts(const std::string& parameter, const std::string& allowed,
                      const ServedLayer& served) {
   return {
@@ -235,7 +236,7 @@ std::shared_ptr<const ValueTable> find_table(const TableChoice& choice, const Se
   return choice.table;
 }
 
-/// Of the table, what it says in the language of the labels; null if that is nothing else.
+/// The translation of the table into the language of the labels; null if there is none.
 std::shared_ptr<const ValueTable> find_translation(const LayerSettings& settings,
                                                    const ServedLayer& served) {
   const auto* choice = settings.find<TableChoice>(ParameterId::values);
@@ -247,7 +248,7 @@ std::shared_ptr<const ValueTable> find_translation(const LayerSettings& settings
   return found == named->second.languages.end() ? nullptr : found->second;
 }
 
-/// The number of the attribute that is the key, or -1.
+/// The index of the key attribute, or -1.
 int field_to_join(const LayerSettings& settings, const ValueTable& table,
                   const FeatureTable& features) {
   const auto* name = settings.find<std::string>(ParameterId::join);
@@ -283,7 +284,7 @@ std::optional<Problem> make_joined(Making& making) {
 
 // ---- classes by value
 
-/// Many values in few colours are as few passes as there are colours.
+/// Values with the same colour share a pass, so that there are only as many passes as colours.
 void make_alike(Making& making) {
   std::vector<std::uint8_t> alike;
   for (const Rgba fill : making.fills) {
@@ -293,7 +294,7 @@ void make_alike(Making& making) {
   making.style.classing.alike = std::move(alike);
 }
 
-/// What has no value, where it is told apart from all others.
+/// The colour of features without a value, if it is set separately.
 std::optional<Rgba> no_data_colour(const Making& making) {
   const auto* colour = making.settings.find<Rgba>(ParameterId::no_data_color);
   if (colour == nullptr) return std::nullopt;
@@ -327,7 +328,7 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
   const bool has_null =
       std::ranges::any_of(values, [](const auto& value) { return !value.has_value(); });
   if (const auto colour = no_data_colour(making); colour && !has_null) {
-    constexpr std::size_t kMostBeside = 252;  // as a byte numbers classes
+    constexpr std::size_t kMostBeside = 252;  // classes are numbered by a byte
     if (values.size() > kMostBeside) {
       return Problem{
           400, fmt::format("There can be at most {} classes besides no-data-color.", kMostBeside),
@@ -340,7 +341,7 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
   return std::nullopt;
 }
 
-/// Of the attribute of that number, which holds numbers.
+/// For the attribute of that index, which is numeric.
 std::shared_ptr<const ValueSpread> spread_of_field(Making& making, int field) {
   if (field == making.attributes().joined_index()) {
     return making.derived().spread(making.served.revision, *making.style.classing.joined);
@@ -357,7 +358,7 @@ std::vector<double> ruled_breaks(Making& making, const BreakRule& rule) {
                                  rule);
 }
 
-/// Numbers that are all the same are one class; where there are none, nothing has a value.
+/// If all numbers are equal, they form one class; if there are none, no feature has a value.
 void make_undivided(Making& making, const std::string& ramp) {
   Classing& classing = making.style.classing;
   const auto spread = spread_of_field(making, classing.field);
@@ -365,7 +366,7 @@ void make_undivided(Making& making, const std::string& ramp) {
     classing.field = -1;
     return;
   }
-  classing.breaks = {spread->least()};  // below which there is nothing
+  classing.breaks = {spread->least()};  // there are no smaller numbers
   const auto colours = ramp_colours(ramp, 1);
   making.fills.assign(2, with_opacity(colours ? colours->front() : kBlack, making.fill_opacity));
 }
@@ -385,7 +386,7 @@ std::optional<Problem> make_breaks(Making& making, const Field& field) {
             : fmt::format("The attribute {} holds text, which breaks cannot divide.", field.name),
         "color-by", field.name, "a numeric attribute, or classes instead of breaks"};
   }
-  // All others than numbers have none.
+  // Everything that is not a number has no value.
   making.others = no_data_colour(making).value_or(making.others);
   const auto& ramp = *settings.find<std::string>(ParameterId::ramp);
   const ParameterValue& setting = *settings.find_value(ParameterId::breaks);
@@ -428,14 +429,14 @@ std::optional<Problem> make_classes(Making& making) {
                                                            : make_breaks(making, field);
   if (problem) return problem;
   const bool is_wanted = making.style.origin->rule || making.looking == Looking::for_legend;
-  // Of a layer in parts, nothing but the breaks themselves is known here.
+  // For a layer in parts, only the breaks themselves are known here.
   if (is_wanted && field.type != FieldType::text && making.served.parts == nullptr) {
     making.style.origin->spread = spread_of_field(making, number);
   }
   return std::nullopt;
 }
 
-/// Nothing to make: tolerance_in_pixels() takes the distance into account.
+/// There is nothing to add: tolerance_in_pixels() takes the distance into account.
 std::optional<Problem> check_merge(const Making& making) {
   const auto* merge = making.settings.find<double>(ParameterId::merge);
   if (merge == nullptr || *merge == 0) return std::nullopt;
@@ -472,9 +473,9 @@ std::optional<Problem> make_selection(Making& making) {
 
 // ---- labels
 
-constexpr std::string_view kNoLabel = "none";  // an attribute of that name stands in braces
+constexpr std::string_view kNoLabel = "none";  // an attribute of that name needs braces
 
-/// The number of the attribute by which labels are ordered, -1 if that is by area.
+/// The index of the attribute by which labels are ordered; -1 for the area.
 Result<int> label_priority(const Making& making) {
   const auto* name = making.settings.find<std::string>(ParameterId::label_priority);
   if (name == nullptr || *name == "area") return -1;
@@ -489,7 +490,7 @@ Result<int> label_priority(const Making& making) {
   return number;
 }
 
-/// The values that are joined already, in the language of the labels; null if there are none.
+/// The values already joined, in the language of the labels; null if there are none.
 Result<std::shared_ptr<const JoinedValues>> translated_values(Making& making) {
   const ServedLayer& served = making.served;
   const auto table = find_translation(making.settings, served);
@@ -639,7 +640,7 @@ bool names_values(const StyleQuery& style, const std::string& layer) {
 }
 
 bool has_to_look(const StyleQuery& style, const ServedLayer& served) {
-  if (served.derived == nullptr) return false;  // it would be looked at again
+  if (served.derived == nullptr) return false;  // it would have to be computed again
   const LayerSettings settings(style, served.config.name);
   const FeatureTable& features = served.layer->features();
   const auto* choice = settings.find<TableChoice>(ParameterId::values);

@@ -1,5 +1,5 @@
-// How one layer is to be drawn: a request's style, and what the configuration says where it is
-// silent, resolved into types.
+// How one layer is drawn: the style of a request, completed from the configuration and resolved
+// into types.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@
 
 namespace trapeze {
 
-/// Opacities are part of the colours.
+/// Colours include the opacities.
 struct ClassPaint {
   Rgba fill;
   Rgba stroke;
@@ -32,36 +32,36 @@ struct ClassPaint {
   friend bool operator==(const ClassPaint&, const ClassPaint&) = default;
 };
 
-/// Where classes come from, for legends.
+/// How classes were derived, for legends.
 struct ClassOrigin {
   std::string attribute;          // by which features are coloured
-  std::optional<BreakRule> rule;  // by which its numbers were parted
-  /// Of its numbers, in all of the layer; null where it holds texts, or they were not looked at.
+  std::optional<BreakRule> rule;  // that computed the breaks from its numbers
+  /// Of its numbers in the whole layer. Null for a text attribute, or if they were not read.
   std::shared_ptr<const ValueSpread> spread = {};
 };
 
 struct LayerStyle {
-  std::vector<ClassPaint> paints;  // by number of class, one for each; at least one
+  std::vector<ClassPaint> paints;  // by class number, one each; at least one
   Stroke stroke;
   Pattern pattern;
-  // In pixels of a picture of scale 1. At most one of them is not 0.
-  double grow = 0;     // how wide what is narrower is drawn
-  double smooth = 0;   // how far from corners they are rounded
+  // In pixels of a picture of scale 1. At most one of the two is not 0.
+  double grow = 0;     // narrower features are drawn this wide
+  double smooth = 0;   // distance from a corner at which its rounding starts
   double opacity = 1;  // of fill, pattern and outline together
   Classing classing;
-  std::optional<ClassOrigin> origin = {};  // of classes by value; nothing of what it says is drawn
+  std::optional<ClassOrigin> origin = {};  // of classes by value; does not affect the drawing
   std::optional<NumberFormat> label_format = {};
   std::string units = {};
-  std::string join_attribute = {};               // by which classing.joined is joined
+  std::string join_attribute = {};               // attribute by which classing.joined is joined
   std::shared_ptr<const LabelStyle> label = {};  // null: no labels
 
-  /// How features are drawn that are in no class by value.
+  /// How features in no class by value are drawn.
   const ClassPaint& paint_of_others() const { return paints[classing.class_of_others()]; }
-  /// How far beyond a picture of that scale it has to be known what there is, in pixels: as far as
-  /// outlines reach, for corners what may lie within the triangles in which they are rounded, and
-  /// for what grows, whatever may be in its way.
+  /// How far around a picture of that scale features have to be known, in pixels: as far as
+  /// outlines reach, for rounded corners as far as the triangles in which they are rounded, and for
+  /// growth as far as anything that may be in its way.
   double reach(double scale) const;
-  /// Whether any polygon or outline is drawn with it.
+  /// Whether it draws any polygon or outline.
   bool is_visible() const;
   /// Equal for styles that draw the same features of one layer in the same way.
   std::string key() const;
@@ -69,37 +69,38 @@ struct LayerStyle {
   friend bool operator==(const LayerStyle& a, const LayerStyle& b) { return a.key() == b.key(); }
 };
 
-/// What a request says about a layer, with the layer's own defaults where it is silent. The
-/// problem, 400, is a parameter that is locked.
+/// The style of a request for a layer, completed with the layer's own defaults. The problem is 400
+/// if the request sets a locked parameter.
 Result<StyleQuery> complete_style(const StyleQuery& query, const LayerConfig& config);
 
 enum class Looking : std::uint8_t {
-  for_drawing,  // at as little as it takes
-  for_legend,   // ClassOrigin::spread is there whatever parts the numbers
+  for_drawing,  // reads as little as possible
+  for_legend,   // fills in ClassOrigin::spread, however the numbers are classed
 };
 
-/// `style` is complete, and `position` that of the layer in the dataset. The problem is 400 for a
-/// parameter that does not fit the layer, or contradicts another, and 404 for a table of values
-/// that there is not. Joins and classes that were not found out before take time of the features.
+/// `style` is complete; `position` is that of the layer in the dataset. The problem is 400 for a
+/// parameter that does not fit the layer or contradicts another one, and 404 for an unknown table
+/// of values. Joins and class breaks that were not computed earlier take time in proportion to the
+/// number of features.
 Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& served,
                                std::size_t position, Looking looking = Looking::for_drawing);
 
-/// Usual tolerance, in pixels of the picture: too small to be seen.
+/// Default tolerance, in pixels of the picture: too small to be seen.
 constexpr double kTolerancePixels = 0.25;
 
-/// How far the drawn boundary of the layer may be from the true one. `style` is
-/// complete and fits the layer. Where it asks for blocks
-/// of what is so and so far apart, that tolerance at which they are.
+/// The maximum distance of the layer's drawn boundary from the true one. `style` is complete and
+/// fits the layer. If it sets the distance at which features merge to blocks (`merge`), the
+/// tolerance at which the layer's blocks bridge that distance.
 double tolerance_in_pixels(const StyleQuery& style, const ServedLayer& layer);
 
-/// Whether the style says something of that layer for which all of its features have to be known: a
-/// table to join, or a rule for breaks. Most say nothing like that.
+/// Whether the style sets anything for that layer for which all of its features must be read: a
+/// table to join, or a rule for class breaks. Most styles do not.
 bool names_values(const StyleQuery& style, const std::string& layer);
 
-/// Whether layer_style() has to find out more about the layer than fits between two requests.
+/// Whether layer_style() has to compute more about the layer than fits between two requests.
 bool has_to_look(const StyleQuery& style, const ServedLayer& served);
 
-/// What fills the layer at `position` of the dataset if a request does not say.
+/// The fill of the layer at `position` of the dataset if a request sets none.
 Rgba default_fill(const LayerConfig& config, std::size_t position);
 
 }  // namespace trapeze

@@ -16,7 +16,7 @@
 namespace trapeze {
 namespace {
 
-// Of a degree at the equator: the circle that Web Mercator takes the earth for.
+// Per degree at the equator, on the sphere of Web Mercator.
 constexpr double kMetresPerDegree = kMercatorHalfSide / 180;
 
 bool is_alike(std::string_view a, std::string_view b) {

@@ -9,10 +9,10 @@
 namespace trapeze {
 namespace {
 
-// What rounding may take from a zoom.
+// Rounding error of a zoom.
 constexpr double kZoomError = 1e-9;
 
-/// The number of the copy that a place is in: 0 is the world itself.
+/// The number of the copy of the world that a place is in; 0 is the world itself.
 std::int64_t copy_at(double x) {
   return static_cast<std::int64_t>(std::floor((x - kGridMin) / static_cast<double>(kGridSize)));
 }
@@ -22,7 +22,7 @@ View moved_by_worlds(View view, std::int64_t worlds) {
   return view;
 }
 
-/// So that its west is in the world itself, where the world repeats.
+/// Moves the view by whole worlds so that its west side lies in the world, where the world repeats.
 View brought_home(const View& view) {
   if (view.projection == Projection::plane) return view;
   return moved_by_worlds(view, -copy_at(static_cast<double>(view.origin_x)));
@@ -34,7 +34,7 @@ std::optional<View> view_of_window(const WindowSides& sides, int width, int heig
                                    Projection projection) {
   constexpr double kMost = static_cast<double>(kMostWorlds) * kGridSize;
   for (const double side : {sides.west, sides.north, sides.east, sides.south}) {
-    if (!(std::abs(side) <= kMost)) return std::nullopt;  // written so that NaN fails
+    if (!(std::abs(side) <= kMost)) return std::nullopt;  // also rejects NaN
   }
   const auto cell = [](double place) { return static_cast<std::int64_t>(std::llround(place)); };
   const std::int64_t columns = cell(sides.east) - cell(sides.west);

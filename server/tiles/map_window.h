@@ -11,7 +11,8 @@
 
 namespace trapeze {
 
-/// How many widths of the world a window may be away from its middle, in either direction.
+/// How many widths of the world a window may be away from the middle of the world, in either
+/// direction.
 constexpr int kMostWorlds = 8;
 
 /// The sides of a window, in cells, not yet rounded. y grows southwards.
@@ -25,33 +26,35 @@ struct WindowSides {
   double height() const { return south - north; }
 };
 
-/// The picture of a window, of width x height pixels. Its sides are moved to the nearest whole
-/// cells, each by half a cell at most, which is less than a centimetre; so nothing in the picture
-/// moves further either. West of the world or east of it, the world repeats: the picture is that of
-/// the window around the world whose west is on it. Nothing if a side is more than kMostWorlds
-/// away, or if the window is less than a cell wide or high.
-/// In plate carree, cells are of equal degrees.
+/// The picture of a window, of width x height pixels. Each side is moved to the nearest whole cell,
+/// by at most half a cell, which is less than a centimetre; nothing in the picture moves further.
+/// West and east of the world, the world repeats: the picture shows the window moved by whole
+/// worlds so that its west side lies in the world. Returns nothing if a side is more than
+/// kMostWorlds away, or if the window is less than a cell wide or high. In plate carree, cells are
+/// of equal degrees.
 std::optional<View> view_of_window(const WindowSides& sides, int width, int height,
                                    Projection projection = Projection::mercator);
 
-/// The picture around a place, of width x height pixels as large as those of tiles of that zoom, 0
-/// to kMaxZoom, and scale. Its north-west corner is moved to the nearest whole cell.
+/// The picture around a place, of width x height pixels. Its pixels are as large as those of tiles
+/// of that zoom, 0 to kMaxZoom, and scale. Its north-west corner is moved to the nearest whole
+/// cell.
 View view_around(GridPosition centre, double zoom, int width, int height, int scale);
 
-/// The zoom at which tiles of that scale have pixels as large; of pixels that are not square, the
-/// shorter side counts. Exact for tiles.
+/// The zoom at which tiles of that scale have pixels of the same size; if pixels are not square,
+/// the shorter side counts. Exact for tiles.
 double zoom_of(const View& view, double scale);
 
-/// The cell of the grid at a place of the picture, counted in pixels; nothing if that is off the
-/// world in the north or south.
+/// The cell of the grid at a place of the picture, given in pixels; nothing if it is north or south
+/// of the world.
 std::optional<Point> place_at(const View& view, double column, double row);
 
-/// The same window in another projection; parts of it that are not on the map of Web Mercator are
-/// left out. Nothing if nothing is left.
+/// The same window in another projection, without any parts that are off the map of Web Mercator.
+/// Nothing if no part is left.
 std::optional<WindowSides> sides_in(Projection to, const WindowSides& sides, Projection from);
 
-/// The world repeats from west to east: the views, one for each of its copies that the picture
-/// reaches, in which that copy lies where the world is. Mostly there is one, the view itself.
+/// The views of the copies of the world that the picture reaches, one for each copy: the world
+/// repeats from west to east, and in each view that copy lies where the world is. Usually this is
+/// just the view itself.
 std::vector<View> views_of_copies(const View& view);
 
 }  // namespace trapeze

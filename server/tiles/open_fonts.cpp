@@ -10,7 +10,7 @@
 namespace trapeze {
 namespace {
 
-/// Adds the files that can be used; for the others, what is wrong with them.
+/// Adds the usable files; returns what is wrong with the others.
 std::vector<std::string> add_fonts(const std::vector<std::string>& files, Fonts& fonts) {
   std::vector<std::string> problems;
   for (const std::string& file : files) {

@@ -1,4 +1,4 @@
-// The steps of painting a tile, under the names by which they are measured and reported.
+// The steps of painting a tile, with the names under which they are measured and reported.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ struct PaintStage {
   double PaintTimes::*milliseconds;
 };
 
-/// In the order in which a tile passes them.
+/// In the order in which a tile passes through them.
 inline constexpr std::array kPaintStages = {
     PaintStage{"queue", &PaintTimes::queue_ms},     PaintStage{"select", &PaintTimes::select_ms},
     PaintStage{"draw", &PaintTimes::draw_ms},       PaintStage{"read", &PaintTimes::read_ms},

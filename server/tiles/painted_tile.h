@@ -1,5 +1,5 @@
-// What painting a tile takes and gives, for those who ask for tiles and need not know how it is
-// done.
+// Input and result of painting a tile, for code that requests tiles and need not know how they are
+// painted.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ namespace trapeze {
 
 struct TilePlan;
 
-/// Of the pictures of tiles: raised whenever the bytes of any tile become others although it is
-/// drawn from the same, so that nothing else of its fingerprint changes.
+/// Version of the pictures of tiles. Raise it whenever the bytes of any tile change while
+/// everything else in its fingerprint stays the same.
 constexpr int kPictureVersion = 1;
 
-/// Milliseconds that each step took. What tiles that are drawn together share is shared out evenly.
+/// Milliseconds spent in each step. Time shared by tiles that are drawn together is split evenly.
 struct PaintTimes {
-  double queue_ms = 0;  // until a worker began
+  double queue_ms = 0;  // until a worker started
   double select_ms = 0;
   double draw_ms = 0;
   double read_ms = 0;
@@ -29,22 +29,22 @@ struct PaintTimes {
   double encode_ms = 0;
 };
 
-/// What a tile shows, at a glance.
+/// What a tile shows, in brief.
 enum class TileHint : std::uint8_t {
   none,
-  empty,  // nothing but the background
-  full,   // one colour, of polygons that cover it wholly
+  empty,  // only the background
+  full,   // one colour, of polygons that cover the whole tile
 };
 
 struct PaintedTile {
   std::string fingerprint;                   // see TilePainter::paint()
-  std::shared_ptr<const std::string> bytes;  // PNG or WebP; null if it was not wanted
+  std::shared_ptr<const std::string> bytes;  // PNG or WebP; null if the tile was not wanted
   TileHint hint = TileHint::none;
   PaintTimes times;
-  bool has_palette = true;  // or would have one, as PNG
+  bool has_palette = true;  // as PNG, or would have one
 };
 
-/// A part of a tile: some of its rows, over its whole width.
+/// A part of a tile: some of its rows, over the full width.
 struct PaintedBand {
   RunPicture picture;
   TileHint hint = TileHint::none;
@@ -54,8 +54,8 @@ struct PaintedBand {
 /// A tile to paint.
 struct PaintJob {
   const TilePlan* plan = nullptr;
-  const Cancellation* cancellation = nullptr;  // null: wanted whatever happens
-  /// Whether a tile of that fingerprint has to be painted. Empty: it has.
+  const Cancellation* cancellation = nullptr;  // null: cannot be cancelled
+  /// Whether the tile has to be painted, given its fingerprint. Empty: always.
   std::function<bool(const std::string& fingerprint)> is_wanted = {};
 };
 

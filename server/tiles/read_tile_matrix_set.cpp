@@ -25,13 +25,13 @@ constexpr int kMostTilePixels = 4096;
 constexpr double kMostTiles = 4e9;
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 constexpr double kMetresPerPixel = 0.00028;
-constexpr double kMostUnfit = 0.01;  // of a scale, by which its cell size may be another
+constexpr double kMostUnfit = 0.01;  // relative deviation allowed between scale and cell size
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::runtime_error(what);
 }
 
-/// The part of the first of the names that is there; null if none is.
+/// The member with the first of the names that is present; null if none is.
 const Object* find(const Object& object, std::initializer_list<const char*> names) {
   for (const char* name : names) {
     const auto found = object.find(name);
@@ -65,7 +65,7 @@ double number_in(const Object& object, const char* name, double least, double mo
                  const std::string& where) {
   const Object& found = get(object, {name}, where);
   const double number = found.is_number() ? found.get<double>() : std::nan("");
-  if (!(number >= least && number <= most)) {  // written so that NaN fails
+  if (!(number >= least && number <= most)) {  // also rejects NaN
     fail(fmt::format("{}: {} is no number from {} to {}", where, name, least, most));
   }
   return number;
@@ -77,7 +77,7 @@ int whole_in(const Object& object, const char* name, double most, const std::str
   return static_cast<int>(number);
 }
 
-/// Of the URI or the URN of a system, or its name: "EPSG:2056".
+/// Accepts the URI, the URN or the name of a system: "EPSG:2056".
 MapSystemPtr system_of(const std::string& text) {
   for (const MapSystemPtr& system : usual_map_systems()) {
     if (system->is_called(text)) return system;
@@ -108,7 +108,7 @@ std::string crs_in(const Object& object) {
   fail("crs is neither a URI nor has one: systems are known by name only");
 }
 
-/// In the order of axes of the authority.
+/// In the axis order of the authority.
 void read_origin(const Object& object, const MapSystem& system, const std::string& where,
                  TileMatrix& matrix) {
   const Object& origin = get(object, {"pointOfOrigin", "topLeftCorner"}, where);

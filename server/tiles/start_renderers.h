@@ -1,4 +1,4 @@
-// Makes the renderers of a command, and logs which draws and which did not work.
+// Creates the renderers for a command, and logs which renderer draws and which did not work.
 #pragma once
 
 #include <memory>
@@ -9,17 +9,16 @@
 
 namespace trapeze {
 
-/// Throws std::runtime_error with all reasons if what is asked for does not work here.
+/// Throws std::runtime_error with all reasons if the requested renderer does not work here.
 std::vector<std::unique_ptr<MaskRenderer>> start_renderers(const RendererOptions& options,
                                                            int count);
 
-/// How many of them a configured number of workers takes: one a core if that is 0.
+/// The number of renderers for a configured number of workers: one per core if that is 0.
 int renderer_count(unsigned workers);
 
-/// Warms the renderers up, all at the same time: each draws a little of everything, so that the
-/// first requests do not wait for what a GL device compiles at its first picture (60 to 100 ms on
-/// llvmpipe, 4 ms where Mesa finds what it compiled before in its cache on disk). Throws
-/// std::runtime_error if a device cannot draw.
+/// Warms up the renderers, all at the same time. Each draws a little of everything, so that the
+/// first requests do not wait for a GL device to compile its shaders (60 to 100 ms on llvmpipe, 4
+/// ms if Mesa finds them in its disk cache). Throws std::runtime_error if a device cannot draw.
 void warm_up(std::span<const std::unique_ptr<MaskRenderer>> renderers);
 
 }  // namespace trapeze

@@ -12,10 +12,10 @@
 namespace trapeze {
 namespace {
 
-// What an entry costs beside its key and its picture: nodes of list and map, and the allocator.
+// Cost of an entry besides its key and picture: nodes of list and map, and the allocator.
 constexpr std::size_t kOverhead = 256;
-constexpr std::size_t kSmallShare = 10;  // one part in so many of the budget is the small queue's
-constexpr std::uint8_t kMostHits = 3;    // counted of one entry
+constexpr std::size_t kSmallShare = 10;  // the small queue gets 1/kSmallShare of the budget
+constexpr std::uint8_t kMostHits = 3;    // counted per entry
 
 std::uint64_t hash_of(std::string_view key) {
   return std::hash<std::string_view>()(key);
@@ -67,7 +67,7 @@ class TileCache::Shard {
     std::uint64_t hash = 0;
     Tile tile;
     std::size_t bytes = 0;
-    std::uint8_t hits = 0;  // since it came into its queue, or since it was last spared
+    std::uint8_t hits = 0;  // since it entered its queue, or was last spared
   };
   using Queue = std::list<Entry>;
 
@@ -79,7 +79,7 @@ class TileCache::Shard {
     }
   }
 
-  // Out, or into the main queue if it was asked for.
+  // Evicts the entry, or moves it to the main queue if it was requested.
   void evict_from_small() {
     Entry& oldest = small_.front();
     small_bytes_ -= oldest.bytes;
@@ -92,7 +92,7 @@ class TileCache::Shard {
     drop(small_);
   }
 
-  // Out, or once more round if it was asked for.
+  // Evicts the entry, or moves it to the back if it was requested.
   void evict_from_main() {
     Entry& oldest = main_.front();
     if (oldest.hits > 0) {
@@ -119,10 +119,10 @@ class TileCache::Shard {
   }
 
   const std::size_t budget_;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   Queue small_;
   Queue main_;
-  std::unordered_map<std::string_view, Queue::iterator> entries_;  // keys are the entries' own
+  std::unordered_map<std::string_view, Queue::iterator> entries_;  // keys point into the entries
   std::unordered_set<std::uint64_t> ghosts_;
   std::deque<std::uint64_t> ghost_queue_;
   std::size_t bytes_ = 0;

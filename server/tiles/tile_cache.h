@@ -1,9 +1,9 @@
-// Tiles that were drawn, kept in memory within a budget of bytes.
+// An in-memory cache of drawn tiles, with a budget in bytes.
 //
-// Which to keep is decided by S3-FIFO (Yang et al., "FIFO queues are all you need for cache
-// eviction", SOSP 2023): a tile that nobody asks for again leaves through a small queue, so a scan
-// over a whole map does not push out what is asked for often. The keys of tiles that left that way
-// are remembered for a while; one that comes back goes to the main queue at once.
+// The eviction policy is S3-FIFO (Yang et al., "FIFO queues are all you need for cache eviction",
+// SOSP 2023). Tiles that are not requested again leave through a small queue, so a scan over a
+// whole map does not evict popular tiles. The keys of tiles evicted that way are remembered for a
+// while; if one is requested again, it goes directly to the main queue.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -21,7 +21,7 @@ namespace trapeze {
 
 class TileCache {
  public:
-  /// `budget` bytes for tiles, their keys and what keeps them in order; 0: nothing is kept.
+  /// `budget` is in bytes and covers tiles, their keys and the bookkeeping; 0: nothing is cached.
   explicit TileCache(std::size_t budget);
   ~TileCache();
   TileCache(const TileCache&) = delete;
@@ -32,9 +32,9 @@ class TileCache {
     TileHint hint = TileHint::none;
   };
 
-  /// Its bytes are null if the tile is not there.
+  /// Returns null bytes if the tile is not cached.
   Tile find(std::string_view key);
-  /// Keeps the tile, if it is not larger than what a part of the budget can hold.
+  /// Caches the tile, unless it is too large for one shard's share of the budget.
   void insert(std::string_view key, const Tile& tile);
 
   struct Figures {
@@ -47,7 +47,7 @@ class TileCache {
 
  private:
   class Shard;
-  static constexpr std::size_t kShards = 16;  // so that threads seldom wait for each other
+  static constexpr std::size_t kShards = 16;  // so that threads rarely wait for each other
 
   Shard& shard_of(std::uint64_t hash) const;
 

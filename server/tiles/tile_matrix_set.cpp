@@ -13,14 +13,14 @@
 namespace trapeze {
 namespace {
 
-constexpr double kMetresPerPixel = 0.00028;  // what the OGC takes pixels for
-constexpr double kRounding = 1e-9;           // of a tile: what arithmetic may take from a border
+constexpr double kMetresPerPixel = 0.00028;  // pixel size assumed by the OGC
+constexpr double kRounding = 1e-9;           // of a tile: rounding error at a border
 constexpr double kZoomError = 1e-9;
 
 /// Sets in which every matrix has pixels half as large as the one before.
 TileMatrixSetPtr quad_tree(TileMatrixSet set, std::uint32_t columns, int last) {
   const double half = set.system->half_side;
-  const double side = 2 * half / columns;  // of the tiles of the first matrix
+  const double side = 2 * half / columns;  // of a tile of the first matrix
   const double north = set.system->is_in_degrees ? half / 2 : half;
   for (int z = 0; z <= last; ++z) {
     TileMatrix matrix;
@@ -36,7 +36,7 @@ TileMatrixSetPtr quad_tree(TileMatrixSet set, std::uint32_t columns, int last) {
   return std::make_shared<const TileMatrixSet>(std::move(set));
 }
 
-/// The same around a square of a plane.
+/// The same for a square of a plane.
 TileMatrixSetPtr quad_tree_of(TileMatrixSet set, double west, double north, double cell_size,
                               int last) {
   for (int z = 0; z <= last; ++z) {
@@ -67,8 +67,8 @@ TileMatrixSetPtr european_laea_quad() {
                       2'000'000, 5'500'000, 17'578.125, 15);
 }
 
-// The square of Universal Polar Stereographic as the OGC has registered it: far larger than the
-// system's area of use.
+// The square of Universal Polar Stereographic as registered by the OGC: far larger than the area of
+// use of the reference system.
 TileMatrixSetPtr polar_quad(const std::string& id, const std::string& title,
                             const std::string& grid) {
   constexpr double kMiddle = 2'000'000;  // the false easting and northing of the pole
@@ -113,7 +113,7 @@ View TileMatrixSet::view_of(const TileId& tile, int scale) const {
   const int rows = matrix.tile_height * scale;
   const SystemBounds bounds{west, north - height, west + width, north};
   if (const auto view = system->view_of(bounds, columns, rows)) return *view;
-  // Too far from all that is drawn, or too small for the grid: somewhere off it.
+  // Too far from everything drawn, or too small for the grid: somewhere off it.
   View nothing;
   nothing.origin_x = nothing.origin_y = 2 * kGridSize;
   nothing.width = columns;

@@ -1,4 +1,4 @@
-// The tiles that maps are cut into, as the OGC describes them: tile matrix sets.
+// Tile matrix sets, as defined by the OGC: the tiles that maps are divided into.
 //
 // Thread-safety: any thread; sets are immutable.
 #pragma once
@@ -17,13 +17,13 @@
 
 namespace trapeze {
 
-/// The tiles of a scale.
+/// The tiles of one scale.
 struct TileMatrix {
   std::string id;
   double cell_size = 0;  // of a pixel, in units of the reference system
   double scale_denominator = 0;
-  // The corner that rows and columns are counted from: rows southwards from the north-west, or
-  // northwards from the south-west.
+  // The corner from which rows and columns are counted: rows run southwards from the north-west
+  // corner, or northwards from the south-west corner.
   double west = 0;
   double origin_y = 0;
   bool is_from_south = false;
@@ -32,7 +32,7 @@ struct TileMatrix {
   std::uint32_t width = 1;  // tiles
   std::uint32_t height = 1;
 
-  /// The zoom of Web Mercator at which pixels are as large.
+  /// The zoom of Web Mercator at which pixels have the same size.
   double zoom() const;
 };
 
@@ -44,22 +44,23 @@ struct TileLimits {
   std::uint32_t max_column = 0;
 };
 
-/// Of a tile, z counts the matrices.
+/// The z of a tile is the index of its matrix.
 struct TileMatrixSet {
   std::string id;
   std::string title;
   std::string uri;
-  std::string scale_set;  // well-known, as a URI; may be empty
+  std::string scale_set;  // the URI of a well-known scale set; may be empty
   MapSystemPtr system;
   std::vector<TileMatrix> matrices;  // from coarse to fine
 
   const TileMatrix* find(std::string_view id_of_matrix) const;
-  /// Whether rows are counted from the north in all of them.
+  /// Whether all matrices count rows from the north.
   bool is_from_north() const;
   bool has(const TileId& tile) const;
-  /// Of a tile that it has; the picture has `scale` times as many pixels along each side.
+  /// The view of a tile of this set; the picture has `scale` times as many pixels along each side.
   View view_of(const TileId& tile, int scale) const;
-  /// The tiles that a box and so many pixels around it touch, or all if it is empty.
+  /// The tiles touched by a box and a margin of that many pixels around it; all tiles if the box is
+  /// empty.
   TileLimits limits_of(const Box& box, std::size_t matrix, double pixels = 0) const;
 };
 
@@ -68,19 +69,19 @@ using TileMatrixSetPtr = std::shared_ptr<const TileMatrixSet>;
 const TileMatrixSetPtr& web_mercator_quad();
 const TileMatrixSetPtr& world_crs84_quad();
 
-/// Those that a server knows.
+/// The sets that a server knows.
 class TileMatrixSets {
  public:
   /// WebMercatorQuad, WorldCRS84Quad, EuropeanETRS89_LAEAQuad, UPSArcticWGS84Quad and
-  /// UPSAntarcticWGS84Quad; those whose system PROJ does not know are left out.
+  /// UPSAntarcticWGS84Quad, without those whose reference system PROJ does not know.
   static const TileMatrixSets& built_in();
 
-  /// Throws std::runtime_error if there is another of that id.
+  /// Throws std::runtime_error if there already is a set with that id.
   void add(TileMatrixSetPtr set);
 
-  /// Null if there is none of that id, in any case of letters.
+  /// Finds a set by its id, ignoring case; null if there is none.
   TileMatrixSetPtr find(std::string_view id) const;
-  /// Those that have tiles of the layer, or of some layer.
+  /// The sets with tiles of the layer, or of any layer.
   std::vector<TileMatrixSetPtr> of(const Dataset& dataset, std::string_view layer) const;
   std::vector<TileMatrixSetPtr> of(const Dataset& dataset) const;
 

@@ -46,7 +46,8 @@ View band_of(const TilePlan& plan, int band) {
   return plan.view.band(first, std::min(kBandRows, plan.view.height - first));
 }
 
-/// What tiles do not have. Off the world, places in a copy of it are like those in another.
+/// Adds properties that tiles do not have. Off the world, places in one copy of it look like those
+/// in another.
 void add_unusual(const View& view, ContentHash& hash) {
   if (view.stretch != 1) hash.add(std::bit_cast<std::uint64_t>(view.stretch));
   if (view.is_on_world()) return;
@@ -54,7 +55,7 @@ void add_unusual(const View& view, ContentHash& hash) {
   hash.add(static_cast<std::uint64_t>(view.origin_y));
 }
 
-/// Of a band to those of its tile.
+/// Adds the times of a band to those of its tile.
 void add_times(const PaintTimes& more, PaintTimes& times) {
   times.select_ms += more.select_ms;
   times.draw_ms += more.draw_ms;
@@ -147,7 +148,8 @@ std::string TilePainter::fingerprint_of(const TilePlan& plan, const Sketch& sket
     add_unusual(view, hash);
   }
   for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
-    // Where layers meet is looked for as far as their boundaries may be from the true ones.
+    // Layers are searched for shared borders up to the distance of their boundaries from the true
+    // ones.
     if (is_drawn && drawings > 1) {
       hash.add(std::bit_cast<std::uint64_t>(drawings_[k].tolerance()));
     }
@@ -172,7 +174,7 @@ std::optional<PaintedBand> TilePainter::paint_band(const PaintJob& job, int band
   Sketch sketch = this->sketch(job, band_of(*job.plan, band));
   note_times(draw({&job, 1}, {&sketch, 1}), sketch);
   if (sketch.is_cancelled) return std::nullopt;
-  TilePlan exact = *job.plan;  // colours become fewer in all bands alike, when they are joined
+  TilePlan exact = *job.plan;  // colours are reduced for all bands together, when they are joined
   exact.quality = Quality::exact;
   const bool is_constant = !compose(exact, sketch);
   PaintedBand painted;
@@ -204,7 +206,7 @@ PaintedTile TilePainter::join(const TilePlan& plan, std::span<const PaintedBand>
   return tile;
 }
 
-/// What tiles that were drawn together share is shared out evenly.
+/// Time shared by tiles that were drawn together is split by their number of tasks.
 void TilePainter::note_times(const DrawTimes& drawn, Sketch& sketch) const {
   const double part = static_cast<double>(sketch.tasks) /
                       static_cast<double>(std::max<std::size_t>(tasks_.size(), 1));
@@ -240,12 +242,12 @@ void TilePainter::release_memory() {
   renderer_->release_memory();
 }
 
-// From the top down: what lies under an opaque layer that covers everything is not looked at.
+// From the top down: anything below an opaque layer that covers everything is skipped.
 void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
   const Stopwatch stopwatch(sketch.times.select_ms);
   const std::vector<View> copies = views_of_copies(sketch.view);
   for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
-    if (!paint->style.is_visible()) continue;  // here for its marks only
+    if (!paint->style.is_visible()) continue;  // included for its marks only
     const std::size_t first = drawing_count_;
     for (const View& copy : copies) {
       if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
@@ -359,7 +361,7 @@ bool TilePainter::compose(const TilePlan& plan, Sketch& sketch) {
   return true;
 }
 
-// Of a tile of one colour.
+// For a tile of one colour.
 TileHint TilePainter::hint_of(const Sketch& sketch) const {
   TileHint hint = TileHint::empty;
   for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
@@ -404,7 +406,7 @@ void TilePainter::mark_layers(const TilePlan& plan, const View& view, Picture& p
 
 void TilePainter::mark_piece(const TilePlan& plan, const LayerPaint& paint, const Layer& layer,
                              const View& view, Picture& picture) {
-  const View around = with_margin(view);  // of marks that reach into the picture
+  const View around = with_margin(view);  // for marks that reach into the picture
   std::vector<TrapezoidRange> ranges;
   layer.select({around.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges);
   const FeatureOf feature_of = [&layer](std::uint32_t i) { return layer.feature_of(i); };

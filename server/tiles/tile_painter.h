@@ -1,6 +1,6 @@
-// Draws tiles: selects trapezoids, draws masks, composes colours, encodes the PNG.
+// Paints tiles: selects trapezoids, draws masks, composes colours, encodes the PNG or WebP.
 //
-// Thread-safety: one thread at a time; every worker has its own.
+// Thread-safety: one thread at a time; every worker has its own painter.
 #pragma once
 
 #include <cstdint>
@@ -32,46 +32,46 @@ namespace trapeze {
 
 class TilePainter {
  public:
-  /// Painters may share what keeps the classes of features, the fonts, which are for marks, and
-  /// the labels.
+  /// Painters may share the class cache, the fonts (for marks) and the labels.
   explicit TilePainter(std::unique_ptr<MaskRenderer> renderer,
                        std::shared_ptr<FeatureClassCache> classes = new_class_cache(),
                        std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>(),
                        std::shared_ptr<LabelBook> labels = std::make_shared<LabelBook>());
 
-  /// Large enough for the classes that the requests of one map name.
+  /// Large enough for the classes that the requests of one map use.
   static std::shared_ptr<FeatureClassCache> new_class_cache();
 
-  /// Paints the tiles, those without a boundary in them from constants and all others in one pass.
-  /// Nothing for those that are not wanted any longer. What a tile looks like does not depend on
-  /// the others. Throws what the renderer and the encoder throw; Cancelled is of one of the tiles.
+  /// Paints the tiles. Tiles without any boundary are taken from constants; all others are drawn in
+  /// one pass. Returns nothing for tiles that are no longer wanted. The picture of a tile does not
+  /// depend on the other tiles. Throws the errors of the renderer and the encoder; if it throws
+  /// Cancelled, one of the tiles was cancelled.
   ///
-  /// The fingerprint, 128 bits as hex digits, is of all that decides the bytes of a tile: its sides
-  /// and lines as they are cut to it, colours, size, format, the renderer, and kPictureVersion.
-  /// Tiles of the same fingerprint have the same bytes, wherever they are, however their layers are
-  /// numbered or called, and whoever paints them; marks for debugging excepted, which have one for
-  /// each tile, layer and build.
+  /// The fingerprint, 128 bits as hex digits, covers everything that determines the bytes of a
+  /// tile: its sides and lines as clipped to it, colours, size, format, the renderer, and
+  /// kPictureVersion. Tiles with the same fingerprint have the same bytes, wherever they are,
+  /// however their layers are numbered or named, and whoever paints them. Debug marks are the
+  /// exception: with them, the fingerprint differs for each tile, layer and build.
   std::vector<std::optional<PaintedTile>> paint(std::span<const PaintJob> jobs);
 
-  /// The fingerprint that paint() would find.
+  /// The fingerprint that paint() would return.
   std::string identify(const PaintJob& job);
 
-  /// How many bands a picture is painted in: 1, or if it is large, several, which painters may do
-  /// at the same time. That depends on nothing but the plan, and so do its bytes.
+  /// The number of bands a picture is painted in: 1, or several for a large picture, which painters
+  /// may paint at the same time. The number depends only on the plan, and so do the bytes.
   static int bands_of(const TilePlan& plan);
-  /// Paints one of them, the northernmost being 0. As paint().
+  /// Paints one band; 0 is the northernmost. Otherwise as paint().
   std::optional<PaintedBand> paint_band(const PaintJob& job, int band);
-  /// The tile that has these bands, from the north.
+  /// Joins the bands, listed from the north, into the tile.
   PaintedTile join(const TilePlan& plan, std::span<const PaintedBand> bands);
 
-  /// Frees working memory that a giant needed and most tiles do not.
+  /// Frees working memory that giant tiles need and most tiles do not.
   void release_memory();
 
-  /// Whether painting several tiles at once takes less time than one after the other.
+  /// Whether painting several tiles in one pass is faster than painting them one by one.
   bool gains_by_batching() const { return renderer_->gains_by_batching(); }
 
  private:
-  // The drawings of one tile or band, and what became of it.
+  // The drawings of one tile or band, and their state.
   struct Sketch {
     View view;
     std::string fingerprint;
@@ -94,7 +94,7 @@ class TilePainter {
   DrawTimes draw(std::span<const PaintJob> jobs, std::span<Sketch> sketches);
   void note_times(const DrawTimes& drawn, Sketch& sketch) const;
   PaintedTile finish(const TilePlan& plan, Sketch& sketch);
-  /// False if it is of one colour, which its only pixel has then.
+  /// False if the tile has one colour; the picture then is a single pixel of that colour.
   bool compose(const TilePlan& plan, Sketch& sketch);
   TileHint hint_of(const Sketch& sketch) const;
   std::string encode(TileFormat format);
@@ -114,7 +114,7 @@ class TilePainter {
   PngEncoder encoder_;
   using ConstantKey = std::tuple<std::string, int, int, TileFormat>;  // colour, width, height
   std::map<ConstantKey, std::shared_ptr<const std::string>> constants_;
-  // Kept from tile to tile only for their memory.
+  // Reused from tile to tile to save allocations.
   std::deque<LayerDrawing> drawings_;  // tasks point into them
   std::size_t drawing_count_ = 0;
   std::vector<MaskTask> tasks_;

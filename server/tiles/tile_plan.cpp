@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-/// Of pixels that are not square, the shorter side decides.
+/// If pixels are not square, the shorter side decides.
 Level level_of_layer(const View& view, const StyleQuery& query, const ServedLayer& layer) {
   return nearest_level(tolerance_in_pixels(query, layer) * view.shorter_side());
 }
@@ -44,12 +44,12 @@ Quality quality_of(const StyleQuery& query) {
   return value ? kQualityNames.find(std::get<std::string>(*value)).value() : Quality::bounded;
 }
 
-/// Where all the world is smaller than a tile, that is as at zoom 0.
+/// Zooms below 0, at which the whole world is smaller than a tile, count as zoom 0.
 bool is_drawn_at(const LayerConfig& config, double zoom) {
   return std::max(zoom, 0.0) >= config.min_zoom && std::floor(zoom) <= config.max_zoom;
 }
 
-/// Of those that may be looked at for the view, and some around it.
+/// Checks the parts that may be read for the view, with a margin.
 bool has_damaged_part(const PreparedParts& parts, const View& view) {
   constexpr double kPixelsAround = 512;
   if (parts.overview() != nullptr && parts.overview()->is_damaged()) return true;

@@ -21,15 +21,15 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// A decimal integer without leading zeros; a minus sign is allowed so that the tiles which maps
-/// ask for beyond the edge of the world are "outside" and not "malformed".
+/// A decimal integer without leading zeros. A minus sign is allowed, so that tiles which maps
+/// request beyond the edge of the world are "outside" and not "malformed".
 bool is_integer(std::string_view text) {
   if (text.starts_with('-')) text.remove_prefix(1);
   if (text.empty() || (text.size() > 1 && text.front() == '0')) return false;
   return std::ranges::all_of(text, is_digit);
 }
 
-/// Nothing if the integer does not fit, which also is outside of every matrix.
+/// Nothing if the integer does not fit; such a number is outside every matrix, too.
 std::optional<std::uint32_t> to_tile_number(std::string_view integer) {
   std::uint32_t number = 0;
   const auto [end, error] =
@@ -42,7 +42,7 @@ Result<TilesRequest> parse_tile(const std::vector<std::string>& path, const Styl
                                 const TileMatrixSets& sets) {
   auto layers = parse_layer_list(path[1]);
   if (!layers) return std::move(layers).problem();
-  const auto names = std::span(path).last(3);  // of matrix, column and row
+  const auto names = std::span(path).last(3);  // matrix, column and row
   auto file = parse_picture_name(names[2]);
   if (!file) return std::move(file).problem();
   const auto set = path.size() == 6 ? sets.find(path[2]) : web_mercator_quad();
@@ -58,7 +58,7 @@ Result<TilesRequest> parse_tile(const std::vector<std::string>& path, const Styl
   return TilesRequest(std::move(request));
 }
 
-/// Of a name without its ending: "7" and 2 of "7@2x".
+/// A name without its extension, split: "7" and 2 for "7@2x".
 struct ScaledStem {
   std::string_view stem;
   int scale = 1;
@@ -90,7 +90,7 @@ Result<TilesRequest> parse_tile_json(std::string_view file, const StyledQuery& q
       TileJsonRequest{*std::move(layers), *std::move(style), stem->scale, *std::move(full)});
 }
 
-/// TileJSON cannot say of which set of matrices it is.
+/// TileJSON cannot state which tile matrix set it describes.
 Problem no_tile_json(const std::string& set) {
   return {400, fmt::format(
                    "TileJSON is about tiles of Web Mercator, at /tiles/{{layers}}.json. The tiles "

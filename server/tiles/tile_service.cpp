@@ -14,8 +14,7 @@
 namespace trapeze {
 namespace {
 
-// What goes wrong with one who is told of a tile, for lack of memory mostly, is not to keep others
-// waiting.
+// If notifying one client fails, usually for lack of memory, the others must still be answered.
 template <class Action>
 void attempt(const Action& tell) {
   try {
@@ -25,10 +24,11 @@ void attempt(const Action& tell) {
   }
 }
 
-// As drawing_cost() counts, for a tile of a few thousand trapezoids: some 100 microseconds.
+// In units of drawing_cost(): a tile of a few thousand trapezoids, which takes about 100
+// microseconds.
 constexpr std::uint64_t kQuickToIdentify = 30'000;
 
-/// In the place of a renderer where tiles are identified only.
+/// Takes the place of a renderer where tiles are only identified.
 class NoRenderer final : public MaskRenderer {
  public:
   explicit NoRenderer(std::string identity) : identity_(std::move(identity)) {}
@@ -43,7 +43,7 @@ class NoRenderer final : public MaskRenderer {
   std::string identity_;
 };
 
-/// Rules that name more features take a while to be known again.
+/// Rules that name more features take too long to look up.
 constexpr std::size_t kFewIds = 1000;
 
 }  // namespace
@@ -115,7 +115,7 @@ std::optional<TileAnswer> TileService::answer_at_once(const TilePlan& plan, std:
   return answer;
 }
 
-/// By the thread that calls; several may.
+/// Runs in the calling thread; several threads may call it.
 std::string TileService::identify(const TilePlan& plan) {
   std::unique_ptr<TilePainter> identifier;
   {
@@ -154,7 +154,7 @@ TileService::Ticket TileService::submit(Order order, Callback callback, Holds ho
       try {
         flights_.insert_or_assign(flight->order.key, flight);
       } catch (...) {
-        queue.pop_back();  // or others would join what no worker takes
+        queue.pop_back();  // otherwise others would join a flight that no worker takes
         throw;
       }
       wake_.notify_one();
@@ -184,7 +184,7 @@ void TileService::withdraw(const Ticket& ticket) {
   Callback callback;
   {
     const std::lock_guard lock(mutex_);
-    if (ticket.number_ >= flight->askers.size()) return;  // all have been answered
+    if (ticket.number_ >= flight->askers.size()) return;  // all clients have been answered
     callback = std::exchange(flight->askers[ticket.number_].callback, nullptr);
     if (callback == nullptr) return;
     if (--flight->wanted == 0) give_up(flight);
@@ -192,7 +192,7 @@ void TileService::withdraw(const Ticket& ticket) {
   callback({TileOutcome::withdrawn, {}});
 }
 
-// One that waits is gone at once; a worker notices before long.
+// A waiting tile is removed immediately; a worker that is drawing one notices before long.
 void TileService::give_up(const std::shared_ptr<Flight>& flight) {
   flight->cancellation.cancel();
   Queue& queue = queue_of(flight->order.cost);
@@ -204,7 +204,7 @@ void TileService::give_up(const std::shared_ptr<Flight>& flight) {
 
 void TileService::forget(const std::shared_ptr<Flight>& flight) {
   const auto found = flights_.find(flight->order.key);
-  // Another one may have begun when nobody wanted this any longer.
+  // A new flight may have started after nobody wanted this one.
   if (found != flights_.end() && found->second == flight) flights_.erase(found);
 }
 
@@ -214,7 +214,7 @@ void TileService::place_usual_labels(const std::shared_ptr<const Dataset>& datas
     TileRequest request;
     request.layers = {layer.config.name};
     const auto plan = plan_tile(std::move(request), dataset);
-    if (!plan) continue;  // whoever asks is told
+    if (!plan) continue;  // the client that requests it gets the problem
     options_.labels->find({*dataset, plan->labels, plan->view, plan->scale});
   }
 }
@@ -236,7 +236,7 @@ void TileService::work(TilePainter& painter) {
   const std::size_t most =
       painter.gains_by_batching() ? std::max<std::size_t>(options_.batch, 1) : 1;
   Work work;
-  work.flights.reserve(most);  // all there will be: taking needs no memory
+  work.flights.reserve(most);  // the maximum, so that taking needs no memory
   while (take(most, work)) {
     if (work.bands != nullptr) {
       help(painter, work.bands);
@@ -276,7 +276,7 @@ bool TileService::take(std::size_t most, Work& work) {
   return true;
 }
 
-// A single worker draws cheap ones first, but not for ever.
+// A single worker draws cheap tiles first, but not forever.
 bool TileService::may_take_dear() const {
   if (dear_queue_.empty() || dear_drawing_ >= std::max<std::size_t>(workers_ / 2, 1)) return false;
   return workers_ > 1 || queue_.empty() ||
@@ -287,7 +287,7 @@ std::size_t TileService::share_of_queue() const {
   return (queue_.size() + workers_ - 1) / workers_;
 }
 
-// Memory may be short even for answers; the worker lives on.
+// Memory may be too short even for answers; the worker continues.
 void TileService::draw(TilePainter& painter, const Flights& flights) {
   try {
     answer(painter, flights);
@@ -308,8 +308,7 @@ void TileService::draw(TilePainter& painter, const Flights& flights) {
   }
 }
 
-// What goes wrong with several tiles is tried again with each alone, so that only the one that is
-// to blame fails.
+// If several tiles fail together, each is retried alone, so that only the faulty one fails.
 void TileService::answer(TilePainter& painter, const Flights& flights) {
   std::vector<TileAnswer> answers = paint(painter, flights);
   for (std::size_t i = 0; i < flights.size(); ++i) {
@@ -323,7 +322,7 @@ void TileService::answer(TilePainter& painter, const Flights& flights) {
 std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& flights) {
   const auto begin = Clock::now();
   std::vector<TileAnswer> answers;
-  // This is the boundary of a request: nothing that goes wrong in one may end the worker.
+  // Request boundary: an error in one request must not end the worker.
   try {
     auto tiles = paint_tiles(painter, flights);
     for (std::size_t i = 0; i < flights.size(); ++i) {
@@ -345,7 +344,7 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
   return answers;
 }
 
-// Those that are large one after the other, each with the help of others.
+// Large tiles are painted one after the other, each with the help of other workers.
 std::vector<std::optional<PaintedTile>> TileService::paint_tiles(TilePainter& painter,
                                                                  const Flights& flights) {
   std::vector<PaintJob> jobs;
@@ -373,7 +372,7 @@ PaintJob TileService::job_of(const std::shared_ptr<Flight>& flight) {
   return job;
 }
 
-// Once all hold it, nobody joins them any more who might not.
+// Once all clients hold the tile, no further client may join that might not.
 bool TileService::is_wanted(const std::shared_ptr<Flight>& flight, const std::string& fingerprint) {
   if (options_.find_kept) flight->kept = options_.find_kept(fingerprint);
   if (flight->kept.bytes != nullptr) return false;
@@ -425,7 +424,7 @@ std::optional<PaintedTile> TileService::paint_in_bands(TilePainter& painter,
   return tile;
 }
 
-// Whoever waits for the bands is told of what goes wrong.
+// The thread that waits for the bands gets the failure.
 void TileService::help(TilePainter& painter, const std::shared_ptr<Bands>& bands) {
   const PaintJob job{&bands->flight->order.plan, &bands->flight->cancellation};
   while (const auto band = take_band(*bands)) {
@@ -442,7 +441,7 @@ void TileService::help(TilePainter& painter, const std::shared_ptr<Bands>& bands
   }
 }
 
-// After a failure none of the others is wanted.
+// After a failure, no other band is needed.
 std::optional<std::size_t> TileService::take_band(Bands& bands) {
   const std::lock_guard lock(mutex_);
   const bool is_left = bands.taken < bands.painted.size() && bands.failure == nullptr;
@@ -453,7 +452,7 @@ std::optional<std::size_t> TileService::take_band(Bands& bands) {
   return is_left ? std::optional(bands.taken - 1) : std::nullopt;
 }
 
-/// What was drawn while a file was written into may be drawn from anything.
+/// Tiles drawn while their file was overwritten may contain anything.
 void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers) {
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const ServedLayer* damaged = flights[i]->order.plan.damaged_layer();
@@ -474,7 +473,7 @@ void TileService::land(const std::shared_ptr<Flight>& flight, TileAnswer answer)
     forget(flight);
     askers.swap(flight->askers);
   }
-  if (askers.empty()) return;  // has landed
+  if (askers.empty()) return;  // has already landed
   tell(answer);
   for (const Asker& asker : askers) {
     if (asker.callback != nullptr) attempt([&] { asker.callback(answer); });

@@ -1,8 +1,8 @@
-// Draws tiles on worker threads: a plan in, bytes out. Knows nothing of HTTP.
+// Draws tiles on worker threads: takes a plan, returns bytes. Knows nothing about HTTP.
 //
-// Dear tiles have a queue of their own, and half of the workers at most: cheap ones go on being
-// drawn beside them. Large tiles are drawn in bands, with the help of workers that have nothing
-// else to do.
+// Expensive tiles have a queue of their own and use at most half of the workers, so that cheap
+// tiles continue to be drawn meanwhile. Large tiles are drawn in bands, with the help of idle
+// workers.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -37,12 +37,12 @@ class TilePainter;
 
 enum class TileOutcome : std::uint8_t {
   drawn,
-  kept,       // found by its fingerprint, and not drawn
-  held,       // by all who asked: there are no bytes
-  saturated,  // the queue is full, or the service is stopping: worth asking again
-  late,       // past the deadline, before it was drawn or while it was
-  withdrawn,  // by who asked
-  failed,     // an error of ours, which has been logged
+  kept,       // found by its fingerprint, so not drawn
+  held,       // every client already has it, so there are no bytes
+  saturated,  // the queue is full, or the service is stopping: retrying may help
+  late,       // the deadline passed before or during drawing
+  withdrawn,  // by the client
+  failed,     // an internal error, which has been logged
 };
 
 inline constexpr NameTable<TileOutcome, 7> kTileOutcomeNames({
@@ -59,23 +59,23 @@ struct TileAnswer {
   TileOutcome outcome = TileOutcome::failed;
   PaintedTile tile;  // if drawn, kept or held
 
-  /// Whether the tile is known by its fingerprint.
+  /// Whether the tile was found by its fingerprint or drawn, so that the fingerprint is known.
   bool is_known() const { return outcome <= TileOutcome::held; }
 };
 
 struct TileServiceOptions {
-  // Distinct tiles that may wait for a worker, of the cheap ones and of the dear ones each.
+  // How many distinct tiles may wait for a worker: cheap and expensive ones are counted separately.
   std::size_t queue = defaults::kQueue;
   std::chrono::milliseconds deadline = defaults::kDeadline;  // from submission to the answer
-  // Tiles that a worker draws in one pass, at most, if that is faster than one by one. None is
-  // waited for; but a tile waits until those of its pass are drawn too.
+  // The maximum number of tiles that a worker draws in one pass, if that is faster than one by one.
+  // A worker does not wait for more tiles; but a tile waits until all tiles of its pass are drawn.
   std::size_t batch = defaults::kBatch;
-  // For marks.
+  // For debug marks.
   std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
   std::shared_ptr<LabelBook> labels = std::make_shared<LabelBook>();
-  // Finds a tile that was drawn before by its fingerprint; its bytes are null if it is not there.
+  // Finds a previously drawn tile by its fingerprint; returns null bytes if there is none.
   std::function<TileCache::Tile(const std::string& fingerprint)> find_kept = {};
-  // Told once of every tile, however many asked for it, from whatever thread answers.
+  // Called once for every tile, however many clients requested it, from the thread that answers.
   std::function<void(const TileAnswer&)> observe = {};
 };
 
@@ -83,18 +83,19 @@ class TileService {
  public:
   using Clock = std::chrono::steady_clock;
   using Callback = std::function<void(const TileAnswer&)>;
-  /// Whether who asks has the tile of that fingerprint already, and needs no bytes. Called from a
-  /// worker with the service locked.
+  /// Whether the client already has the tile with that fingerprint and needs no bytes. Called from
+  /// a worker with the service locked.
   using Holds = std::function<bool(const std::string& fingerprint)>;
-  /// Those that are not cheap wait apart. The memory that a giant one took is given back at once.
+  /// Dear and giant tiles wait in a queue of their own. Memory that a giant tile used is freed
+  /// immediately afterwards.
   enum class Cost { cheap, dear, giant };
 
   struct Order {
     TilePlan plan;
-    std::string key;  // the plan's
+    std::string key;  // of the plan
     Cost cost = Cost::cheap;
-    /// Of a tile that is not to be drawn if its fingerprint is found to be kept, or held by all who
-    /// ask. False: it is drawn whatever its fingerprint is.
+    /// Whether the tile need not be drawn if its fingerprint turns out to be kept, or held by all
+    /// clients. If false, it is drawn regardless of its fingerprint.
     bool may_be_known = true;
   };
 
@@ -102,44 +103,46 @@ class TileService {
   struct Flight;
 
  public:
-  /// Of one who asked.
+  /// Identifies one submitted request.
   class Ticket {
     friend class TileService;
     std::weak_ptr<Flight> flight_;
     std::size_t number_ = 0;
   };
 
-  /// Starts one worker for each renderer, of which there is at least one. Throws std::system_error
-  /// if a thread cannot be started.
+  /// Starts one worker for each renderer; there must be at least one. Throws std::system_error if a
+  /// thread cannot be started.
   TileService(TileServiceOptions options, std::vector<std::unique_ptr<MaskRenderer>> renderers);
-  /// What waits is answered as saturated, what is being drawn as late as soon as that is noticed.
+  /// Waiting requests are answered as saturated. Tiles being drawn are answered as late, as soon as
+  /// their workers notice.
   ~TileService();
   TileService(const TileService&) = delete;
   TileService& operator=(const TileService&) = delete;
 
-  /// Calls `callback` exactly once: from a worker, or from within this call if the queue is full,
-  /// or from within withdraw(). Plans of equal key that are under way together are drawn once. An
-  /// empty `holds` holds nothing. Throws std::bad_alloc, and never calls back, if there is no
-  /// memory to wait.
+  /// Calls `callback` exactly once: from a worker, or within this call if the queue is full, or
+  /// within withdraw(). Plans with equal keys that are in progress at the same time are drawn once.
+  /// An empty `holds` holds nothing. Throws std::bad_alloc, and never calls back, if there is no
+  /// memory to queue the request.
   Ticket submit(Order order, Callback callback, Holds holds = {});
 
-  /// What submit() would answer a plan of that cost which need not be drawn, found within this call
-  /// where that takes less time than to hand it to a worker: a tenth of a millisecond at most.
-  /// Nothing if it has to be drawn, and for all others, to be submitted: those of many trapezoids,
-  /// in several parts, with marks, with labels that have not been placed, in classes that no tile
-  /// of late was in, of a file that was truncated.
+  /// The answer that submit() would give for a plan of that cost whose tile need not be drawn, if
+  /// it can be found within this call faster than by handing it to a worker: within a tenth of a
+  /// millisecond. Returns nothing if the tile has to be drawn, and always for the following plans,
+  /// which must be submitted: those with many trapezoids, of layers in several parts, with debug
+  /// marks, with labels that have not been placed, with classes that no recent tile had, and of a
+  /// file that was truncated.
   std::optional<TileAnswer> answer_at_once(const TilePlan& plan, std::uint64_t cost,
                                            const Holds& holds);
 
-  /// Answers this one who asked, if that has not been done; what nobody else asked for is not drawn
-  /// any further.
+  /// Answers this request, unless that has been done. If no other request wants the tile, its
+  /// drawing stops.
   void withdraw(const Ticket& ticket);
 
-  /// One word for what draws.
+  /// The renderer's name, one word.
   const std::string& renderer_name() const { return renderer_name_; }
 
-  /// Places the labels that layers have by their configuration alone, each layer for itself, so
-  /// that no tile has to wait for that.
+  /// Places the labels that the configuration alone gives to layers, each layer separately, so that
+  /// no tile has to wait for it.
   void place_usual_labels(const std::shared_ptr<const Dataset>& dataset);
 
   /// See LabelBook::cost_of().
@@ -151,31 +154,31 @@ class TileService {
   };
   Figures figures() const;
 
-  /// Releases what the renderers keep for a mesh. Call it when nothing is going to draw it any
-  /// more: what is drawn later would be kept again.
+  /// Releases what the renderers keep for a mesh. Call it once nothing draws that mesh any more:
+  /// drawing it again would keep it again.
   void forget(std::uint64_t mesh_id) { renderer_.forget(mesh_id); }
 
  private:
   struct Asker {
-    Callback callback;  // empty: withdrew
+    Callback callback;  // empty: withdrawn
     Holds holds;
   };
   struct Flight {
     Order order;
     Clock::time_point submitted;
-    Cancellation cancellation;  // at the deadline of the last who asked
+    Cancellation cancellation;  // at the last client's deadline
     std::vector<Asker> askers;
-    std::size_t wanted = 0;  // askers that did not withdraw
-    TileCache::Tile kept;    // by the worker that draws it, as it was found
+    std::size_t wanted = 0;  // askers that have not withdrawn
+    TileCache::Tile kept;    // set by the drawing worker if the tile was found
   };
   /// The bands of a large tile.
   struct Bands {
     std::shared_ptr<Flight> flight;
-    std::vector<std::optional<PaintedBand>> painted;  // each by who has taken it
-    // Guarded by the mutex of the service:
+    std::vector<std::optional<PaintedBand>> painted;  // each written by the worker that took it
+    // Guarded by the service's mutex:
     std::size_t taken = 0;
     std::size_t done = 0;
-    std::exception_ptr failure = nullptr;  // of the first that failed
+    std::exception_ptr failure = nullptr;  // the first failure
   };
   using Flights = std::vector<std::shared_ptr<Flight>>;
   using Queue = std::deque<std::shared_ptr<Flight>>;
@@ -185,18 +188,18 @@ class TileService {
   void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
   void stop_workers();
   void work(TilePainter& painter);
-  /// What a worker is to do next: flights to draw together, or else bands to help with.
+  /// The next work of a worker: flights to draw together, or else bands to help with.
   struct Work {
     Flights flights;
     std::shared_ptr<Bands> bands;
   };
-  /// Of up to so many flights; false when the service stops.
+  /// Takes up to `most` flights; false when the service stops.
   bool take(std::size_t most, Work& work);
   bool may_take_dear() const;
   Queue& queue_of(Cost cost) { return cost == Cost::cheap ? queue_ : dear_queue_; }
-  /// How many of those that wait one worker should take, so that all workers have some.
+  /// How many waiting tiles one worker should take, so that all workers get some.
   std::size_t share_of_queue() const;
-  /// The three below are called with the mutex locked.
+  /// Call these three with the mutex locked.
   Ticket join(const std::shared_ptr<Flight>& flight, Clock::time_point now, Asker asker) const;
   void give_up(const std::shared_ptr<Flight>& flight);
   void forget(const std::shared_ptr<Flight>& flight);
@@ -210,33 +213,33 @@ class TileService {
   static TileAnswer answer_of(const Flight& flight, std::optional<PaintedTile> tile);
   std::optional<PaintedTile> paint_in_bands(TilePainter& painter,
                                             const std::shared_ptr<Flight>& flight);
-  /// Paints bands that nobody has taken yet.
+  /// Paints bands that no worker has taken yet.
   void help(TilePainter& painter, const std::shared_ptr<Bands>& bands);
   std::optional<std::size_t> take_band(Bands& bands);
   static void refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers);
-  /// Answers all who asked and have not been answered.
+  /// Answers all clients that have not been answered.
   void land(const std::shared_ptr<Flight>& flight, TileAnswer answer);
   void tell(const TileAnswer& answer) const;
 
   const TileServiceOptions options_;
-  MaskRenderer& renderer_;  // the first; its worker lives until the service ends
+  MaskRenderer& renderer_;  // the first one; its worker lives until the service ends
   const std::string renderer_name_;
   const std::string renderer_identity_;
   const std::shared_ptr<FeatureClassCache> classes_;
   const std::size_t workers_;
   std::vector<std::thread> threads_;
 
-  std::mutex identifying_;  // guards those below, which find fingerprints and draw nothing
+  std::mutex identifying_;  // guards the following, which only compute fingerprints
   std::vector<std::unique_ptr<TilePainter>> idle_identifiers_;
 
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   std::condition_variable wake_;
   std::condition_variable band_done_;
-  std::deque<std::shared_ptr<Bands>> bands_;  // those of which not all have been taken
+  std::deque<std::shared_ptr<Bands>> bands_;  // those with bands not yet taken
   Queue queue_;
   Queue dear_queue_;
   std::size_t drawing_ = 0;       // tiles that workers have taken
-  std::size_t dear_drawing_ = 0;  // the dear ones of these
+  std::size_t dear_drawing_ = 0;  // the expensive ones among these
   std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // queued or being drawn
   bool is_stopping_ = false;
 };

@@ -1,4 +1,4 @@
-// What a picture of a window of the map is to show, as types.
+// A request for a picture of a window of the map, as types.
 #pragma once
 
 #include <string>
@@ -22,10 +22,10 @@ struct WindowRequest {
   MapSystemPtr system = web_mercator();
 };
 
-/// The window that is a tile.
+/// The window of a tile.
 WindowRequest window_of(TileRequest tile);
 
-/// A picture that is asked for.
+/// A request for a picture.
 using PictureRequest = std::variant<TileRequest, WindowRequest>;
 
 }  // namespace trapeze

@@ -1,5 +1,5 @@
-// What filters and classes look at of the features of a layer: their attributes and, by the name
-// "value", the values that are joined to them.
+// The attributes of features as filters and classes see them: the attributes of a layer and, under
+// the name "value", the values joined to them.
 //
 // Thread-safety: immutable, any number of threads may read.
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace trapeze {
 
-/// By which joined values are called. An attribute of that name cannot be seen beside them.
+/// The name of joined values. It hides an attribute with the same name.
 constexpr std::string_view kJoinedName = "value";
 
 /// Refers to the features, which must outlive it.
@@ -27,10 +27,10 @@ class Attributes {
 
   const FeatureTable& features() const { return *features_; }
   const JoinedValues* joined() const { return joined_.get(); }
-  /// The number of joined values, as if they were an attribute.
+  /// The index of joined values, as if they were an attribute.
   int joined_index() const { return static_cast<int>(features_->fields().size()); }
 
-  /// Number of the attribute of that name, or -1.
+  /// The index of the attribute with that name, or -1.
   int field_index(std::string_view name) const {
     if (joined_ != nullptr && name == kJoinedName) return joined_index();
     return features_->field_index(name);
@@ -45,7 +45,7 @@ class Attributes {
 
  private:
   const FeatureTable* features_;
-  std::shared_ptr<const JoinedValues> joined_;  // null: there are none
+  std::shared_ptr<const JoinedValues> joined_;  // null: none
   Field joined_field_;
 };
 

@@ -10,7 +10,7 @@
 namespace trapeze {
 namespace {
 
-/// Ascending, each once, and only where they part something.
+/// Sorted, without duplicates and without breaks that do not divide the numbers.
 std::vector<double> parting(std::vector<double> breaks, const ValueSpread& spread) {
   std::erase_if(breaks,
                 [&spread](double at) { return !(at > spread.least() && at <= spread.greatest()); });
@@ -28,16 +28,16 @@ std::vector<double> equal_breaks(int classes, const ValueSpread& spread) {
   return breaks;
 }
 
-/// Each at the first number of the class above it.
+/// Each break is at the first number of the class above it.
 std::vector<double> quantile_breaks(int classes, const ValueSpread& spread) {
   std::vector<double> breaks;
   std::size_t value = 0;
-  std::size_t before = 0;  // numbers that are less than that value
+  std::size_t before = 0;  // how many numbers are less than that value
   for (int i = 1; i < classes; ++i) {
     const std::size_t rank =
         static_cast<std::size_t>(i) * spread.count / static_cast<std::size_t>(classes);
     while (before + spread.counts[value] <= rank) before += spread.counts[value++];
-    // Below the least number there would be nothing: so many are the same that they are a class.
+    // There is nothing below the least number: it occurs so often that it fills a class.
     const std::size_t next = std::max<std::size_t>(value, 1);
     if (next < spread.values.size()) breaks.push_back(spread.values[next]);
   }
@@ -81,7 +81,7 @@ std::vector<double> pretty_breaks(int classes, const ValueSpread& spread) {
     digit = 1;
     ++exponent;
   }
-  // 3 / 10 is 0.3, and 3 * 0.1 is not.
+  // 3 / 10 is 0.3, but 3 * 0.1 is not.
   const double power = std::pow(10.0, std::abs(exponent));
   const auto multiple = [&](double count) {
     return exponent < 0 ? count * digit / power : count * digit * power;
@@ -92,12 +92,13 @@ std::vector<double> pretty_breaks(int classes, const ValueSpread& spread) {
   return breaks;
 }
 
-/// Numbers in ascending groups, with sums that tell what a class of neighbours costs.
+/// Numbers in ascending groups, with prefix sums that give the cost of a class of consecutive
+/// groups.
 class JenksGroups {
  public:
   explicit JenksGroups(const ValueSpread& spread) {
     const std::size_t count = std::min(spread.values.size(), kMostJenksValues);
-    // Not to lose digits of numbers that are near each other and far from 0.
+    // To keep precision for numbers that are close to each other and far from 0.
     const long double origin = spread.values[spread.values.size() / 2];
     for (std::size_t group = 0; group < count; ++group) {
       const std::size_t begin = group * spread.values.size() / count;
@@ -117,7 +118,7 @@ class JenksGroups {
 
   std::size_t size() const { return first_.size(); }
   double first_value(std::size_t group) const { return first_[group]; }
-  /// The squared distances of the numbers of groups `begin` to `end` - 1 from their mean.
+  /// The sum of squared distances of the numbers in groups `begin` to `end` - 1 from their mean.
   long double cost(std::size_t begin, std::size_t end) const {
     const long double sum = sums_[end] - sums_[begin];
     return squares_[end] - squares_[begin] - sum * (sum / (weights_[end] - weights_[begin]));
@@ -130,9 +131,9 @@ class JenksGroups {
   std::vector<long double> squares_{0};
 };
 
-/// Fisher's dynamic programme: the best ways to part the first groups, with one class more at a
-/// time. The last class of a longer beginning never begins earlier than that of a shorter one, so
-/// that the middle one halves the search for the others.
+/// Fisher's dynamic programming: the best divisions of each initial run of groups, with one more
+/// class in each step. The last class of a longer run never begins earlier than that of a shorter
+/// one, so solving the middle one first halves the search range of the others.
 class JenksClasses {
  public:
   JenksClasses(const JenksGroups& groups, int classes) : groups_(groups) {
@@ -147,7 +148,7 @@ class JenksClasses {
     }
   }
 
-  /// Where all classes but the first begin.
+  /// The first numbers of all classes except the lowest one.
   std::vector<double> breaks() const {
     std::vector<double> breaks;
     std::size_t end = groups_.size();
@@ -159,7 +160,7 @@ class JenksClasses {
   }
 
  private:
-  /// For beginnings of `first` to `last` groups, whose last class begins within the two others.
+  /// For runs of `first` to `last` groups, whose last class begins between `least` and `greatest`.
   void search(std::size_t first, std::size_t last, std::size_t least, std::size_t greatest) {
     if (first > last) return;
     const std::size_t middle = first + (last - first) / 2;
@@ -178,7 +179,7 @@ class JenksClasses {
   }
 
   const JenksGroups& groups_;
-  std::vector<long double> best_;  // by the number of groups that are parted
+  std::vector<long double> best_;  // by the number of groups divided
   std::vector<long double> next_;
   std::vector<std::vector<std::uint32_t>> begins_;  // of the last class; by classes, then as best_
 };

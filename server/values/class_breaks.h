@@ -1,7 +1,7 @@
-// Where to part numbers into classes, by a rule.
+// Divides numbers into classes by a rule.
 //
-// Breaks ascend, and a number is in the class above each break that it reaches. None is at or below
-// the least number, or above the greatest: no class at an end is empty.
+// Breaks are ascending, and a number is in the class above each break that it reaches. No break is
+// at or below the least number, or above the greatest, so the classes at the ends are not empty.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -20,10 +20,10 @@ namespace trapeze {
 
 enum class BreakMethod : std::uint8_t {
   equal,     // classes of equal width
-  jenks,     // the least sum of squared distances from the means of classes (Fisher, Jenks)
-  pretty,    // at multiples of 1, 2 or 5 times a power of ten; about as many classes as are wanted
-  quantile,  // as many numbers in each
-  stddev,    // one standard deviation wide, from the mean on
+  jenks,     // minimal sum of squared distances from class means (Fisher, Jenks)
+  pretty,    // at multiples of 1, 2 or 5 times a power of ten; the number of classes is approximate
+  quantile,  // the same number of values in each class
+  stddev,    // one standard deviation wide, starting at the mean
 };
 
 inline constexpr NameTable<BreakMethod, 5> kBreakMethodNames({
@@ -39,19 +39,19 @@ constexpr int kMostRuledClasses = 32;
 
 struct BreakRule {
   BreakMethod method = BreakMethod::quantile;
-  int classes = kUsualClasses;  // wanted, 2 to kMostRuledClasses; of stddev without a meaning
+  int classes = kUsualClasses;  // requested, 2 to kMostRuledClasses; ignored for stddev
 
   friend bool operator==(const BreakRule&, const BreakRule&) = default;
 };
 
-/// "quantile:5"; "quantile" is of kUsualClasses. Nothing for what is no rule.
+/// Parses "quantile:5"; "quantile" alone means kUsualClasses. Nothing for invalid text.
 std::optional<BreakRule> parse_break_rule(std::string_view text);
-/// In full: "quantile:5", "stddev".
+/// The full form: "quantile:5", "stddev".
 std::string break_rule_text(const BreakRule& rule);
 
-/// None if all numbers are the same, or there are none; fewer than the rule wants if there are not
-/// so many different numbers. Of more than kMostJenksValues different ones, jenks takes as many
-/// groups of neighbours for the numbers, each as one at its mean; otherwise it is exact.
+/// Empty if all numbers are equal, or there are none; fewer than the rule requests if there are not
+/// enough distinct numbers. With more than kMostJenksValues distinct numbers, jenks replaces them
+/// by that many groups of neighbours, each of which counts as its mean; otherwise it is exact.
 std::vector<double> class_breaks(const BreakRule& rule, const ValueSpread& spread);
 
 constexpr std::size_t kMostJenksValues = 8192;

@@ -36,7 +36,7 @@ Result<bool> CsvReader::next() {
       if (!read_quoted(*field)) return malformed("has a quote that is not closed");
     } else {
       std::size_t end =
-          0;  // by hand: of single characters, find_first_of() is several times slower
+          0;  // a loop, because find_first_of() is several times slower for single characters
       while (end < text_.size() && !ends_field(text_[end])) ++end;
       field->assign(text_.substr(0, end));
       text_.remove_prefix(end);
@@ -64,7 +64,7 @@ std::string* CsvReader::new_field() {
   return &fields_[count_++];
 }
 
-/// From the quote that opens it to after the one that closes it; a quote within is written twice.
+/// Reads from the opening quote to after the closing one; a quote inside is doubled.
 bool CsvReader::read_quoted(std::string& field) {
   field.clear();
   text_.remove_prefix(1);

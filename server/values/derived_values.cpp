@@ -7,15 +7,15 @@
 namespace trapeze {
 namespace {
 
-constexpr std::size_t kOverhead = 512;      // of an entry, about
-constexpr std::size_t kBytesOfSpread = 12;  // of a number that comes once
+constexpr std::size_t kOverhead = 512;      // per entry, approximate
+constexpr std::size_t kBytesOfSpread = 12;  // of a number that occurs once
 constexpr std::size_t kBytesOfJoinedFeature = 4;
 
 std::string name_of_join(std::uint64_t revision, int field, const ValueTable& table) {
   return fmt::format("{:016x} join {}", revision, JoinedValues::key_of(table, field));
 }
 
-/// Of the attribute of a number, or of joined values by their key.
+/// For the attribute with that index, or for joined values by their key.
 std::string name_of_spread(std::uint64_t revision, const std::string& numbers) {
   return fmt::format("{:016x} of {}", revision, numbers);
 }

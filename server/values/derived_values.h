@@ -1,8 +1,8 @@
-// What was found out about layers for styles, kept so that no tile waits for it twice: joined
-// values, how numbers are spread, and where they are parted into classes.
+// Caches what was computed about layers for styles, so that no tile waits for it twice: joined
+// values, the distribution of numbers, and class breaks.
 //
-// Thread-safety: all methods may be called from any thread; a call for what another thread is
-// finding out waits for it.
+// Thread-safety: all methods may be called from any thread; a call for something that another
+// thread is computing waits for it.
 #pragma once
 
 #include <cstddef>
@@ -24,33 +24,34 @@ namespace trapeze {
 
 class DerivedValues {
  public:
-  /// `budget` in bytes, for the last that were asked for.
+  /// `budget` is in bytes; the most recently used results are kept.
   explicit DerivedValues(std::size_t budget = kDefaultBudget) : kept_(budget) {}
 
-  /// As JoinedValues::join(). `revision` tells the layer from others, and from what it was.
+  /// See JoinedValues::join(). `revision` identifies the layer in a certain state.
   Result<std::shared_ptr<const JoinedValues>> join(std::uint64_t revision, const Layer& layer,
                                                    int field,
                                                    const std::shared_ptr<const ValueTable>& table);
-  /// Whether join() has its answer already.
+  /// Whether the result of join() is cached.
   bool has_join(std::uint64_t revision, int field, const ValueTable& table) const;
 
-  /// Of an attribute of numbers.
+  /// For a numeric attribute.
   std::shared_ptr<const ValueSpread> spread(std::uint64_t revision, const Layer& layer, int field);
-  /// Of joined values that are numbers.
+  /// For numeric joined values.
   std::shared_ptr<const ValueSpread> spread(std::uint64_t revision, const JoinedValues& joined);
 
-  /// class_breaks() of what spread() gives.
+  /// class_breaks() of the result of spread().
   std::vector<double> breaks(std::uint64_t revision, const Layer& layer, int field,
                              const BreakRule& rule);
   std::vector<double> breaks(std::uint64_t revision, const JoinedValues& joined,
                              const BreakRule& rule);
 
-  /// Whether breaks() has its answer already: of an attribute, of values joined by an attribute.
+  /// Whether the result of breaks() is cached: for an attribute, and for values joined by an
+  /// attribute.
   bool has_breaks(std::uint64_t revision, int field, const BreakRule& rule) const;
   bool has_breaks(std::uint64_t revision, const ValueTable& table, int joined_by,
                   const BreakRule& rule) const;
 
-  /// Bytes held, about.
+  /// Approximate memory in bytes.
   std::size_t memory() const;
 
   static constexpr std::size_t kDefaultBudget = std::size_t{128} << 20;
@@ -63,7 +64,7 @@ class DerivedValues {
     std::vector<double> breaks;
   };
 
-  /// What is kept under that key, found out by `find` if it is not there yet.
+  /// The entry with that key; `find` computes it if it is missing.
   std::shared_ptr<Entry> keep(const std::string& key, std::size_t bytes,
                               const std::function<void(Entry&)>& find);
   bool has(const std::string& key) const;

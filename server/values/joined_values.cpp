@@ -27,13 +27,13 @@ std::optional<std::int64_t> integer_in(std::string_view text) {
   std::int64_t integer = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
   if (error == std::errc() && end == text.data() + text.size()) return integer;
-  const auto number = number_in(text);  // such as 7.0
+  const auto number = number_in(text);  // for example 7.0
   constexpr double kExact = 9007199254740992;
   if (!number || std::floor(*number) != *number || std::abs(*number) > kExact) return std::nullopt;
   return static_cast<std::int64_t>(*number);
 }
 
-/// Rows of a table by keys that are numbers.
+/// The rows of a table by numeric key.
 template <typename Number>
 class NumberedRows {
  public:
@@ -47,7 +47,7 @@ class NumberedRows {
     std::ranges::sort(rows_);
   }
 
-  /// Two rows of the same number.
+  /// Two rows with the same number.
   std::optional<std::pair<std::uint32_t, std::uint32_t>> find_double() const {
     const auto found = std::ranges::adjacent_find(
         rows_, [](const auto& a, const auto& b) { return a.first == b.first; });

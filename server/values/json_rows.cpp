@@ -12,16 +12,16 @@
 namespace trapeze {
 namespace {
 
-/// How the rows of a document look: each of its forms has one.
+/// The form of the rows of a document; all rows of a document have the same form.
 enum class Form : std::uint8_t {
-  unknown,  // nothing has come yet
+  unknown,  // nothing has been read yet
   members,  // {"FRA": 1, "DEU": 2}
-  list,     // [ ... ], and no row of it has come yet
+  list,     // [ ... ], with no row read yet
   objects,  // [{"A3": "FRA", "area": 1}, ...]
   pairs,    // [["FRA", 1], ...]
 };
 
-/// Takes the events of a parser, each of which ends the parsing if it answers with false.
+/// Handles the events of a parser; returning false from any of them ends the parsing.
 class RowHandler {
  public:
   RowHandler(ValueNames columns, std::size_t max_rows)
@@ -31,14 +31,14 @@ class RowHandler {
   bool boolean(bool value) { return take(value ? "true" : "false"); }
   bool number_integer(std::int64_t value) { return take(fmt::format("{}", value)); }
   bool number_unsigned(std::uint64_t value) { return take(fmt::format("{}", value)); }
-  // As it is written: a number of many digits is no other one.
+  // As written, so that a number with many digits is not rounded.
   bool number_float(double /*value*/, const std::string& text) { return take(text); }
   bool string(std::string& value) { return take(std::move(value)); }
   bool binary(nlohmann::json::binary_t& /*value*/) { return false; }
 
   bool key(std::string& name) {
     if (depth_ == 1) {
-      key_ = std::move(name);  // of a member of the only object
+      key_ = std::move(name);  // of a member of the outermost object
       return true;
     }
     name_ = std::move(name);
@@ -108,7 +108,7 @@ class RowHandler {
     return true;
   }
 
-  /// A value that is not nested.
+  /// A value that is neither array nor object.
   bool take(std::string text) {
     if (depth_ == 0) return fail("A table is an array or an object.");
     if (depth_ == 1) {
@@ -127,7 +127,7 @@ class RowHandler {
     return true;
   }
 
-  // Where the columns have no names, the first members of the first row give them theirs.
+  // If the columns have no names, the first members of the first row name them.
   bool take_member(std::string text) {
     if (row_ == 1) {
       if (columns_.key.empty() && name_ != columns_.value) {
@@ -154,7 +154,7 @@ class RowHandler {
     if (!value_text_ && form_ == Form::pairs) {
       return fail(fmt::format("Row {} of the table has a key and no value.", row_));
     }
-    // A member that is left out is as good as null.
+    // A missing member counts as null.
     return add(*key_text_, value_text_.value_or(std::string()));
   }
 
@@ -179,8 +179,8 @@ class RowHandler {
   Form form_ = Form::unknown;
   int depth_ = 0;
   std::size_t row_ = 0;
-  // Of the row that is being read:
-  std::string key_;   // of Form::members
+  // For the row that is being read:
+  std::string key_;   // in Form::members
   std::string name_;  // of a member
   int members_ = 0;
   std::optional<std::string> key_text_;

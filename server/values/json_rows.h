@@ -1,4 +1,4 @@
-// A table of keys and values as JSON, read row by row without holding it as a document.
+// Reads a table of keys and values from JSON, row by row, without building the document in memory.
 #pragma once
 
 #include <cstddef>

@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kMostDigits = 9;
 constexpr int kUsualDigits = 6;
-constexpr double kGreatestFixed = 1e21;  // from which on digits would be no information
+constexpr double kGreatestFixed = 1e21;  // from here on, decimals carry no information
 
-/// "1234567.5" as "1,234,567.5".
+/// "1234567.5" becomes "1,234,567.5".
 std::string with_groups(std::string text) {
   constexpr std::size_t kGroup = 3;
   const std::size_t begin = text.starts_with('-') ? 1 : 0;
@@ -32,7 +32,7 @@ std::string without_zeros(std::string text) {
   return text;
 }
 
-/// No zero is negative.
+/// Removes the sign of negative zero.
 std::string without_sign_of_zero(std::string text) {
   const bool is_zero = text.find_first_of("123456789") == std::string::npos;
   if (is_zero && text.starts_with('-')) text.erase(0, 1);
@@ -50,11 +50,11 @@ std::string fixed(double number, const NumberFormat& format) {
 std::string si(double number, const NumberFormat& format) {
   constexpr std::array<std::string_view, 11> kPrefixes = {"p", "n", "µ", "m", "", "k",
                                                           "M", "G", "T", "P", "E"};
-  constexpr int kFirst = -4;  // power of a thousand
+  constexpr int kFirst = -4;  // as a power of 1000
   constexpr int kLast = 6;
   if (number == 0) return "0";
   const int significant = std::max(format.digits.value_or(3), 1);
-  // By the number as it is rounded: 999,999 is 1.00M.
+  // Determined by the rounded number: 999,999 is 1.00M.
   const std::string rounded = fmt::format("{:.{}e}", std::abs(number), significant - 1);
   const int exponent = std::stoi(rounded.substr(rounded.find('e') + 1));
   const int power = std::clamp(static_cast<int>(std::floor(exponent / 3.0)), kFirst, kLast);
@@ -119,7 +119,7 @@ std::string formatted(double number, const NumberFormat& format) {
 NumberFormat format_for_step(double step) {
   NumberFormat format;
   format.has_groups = true;
-  // Two digits of the step.
+  // Two significant digits of the step.
   const double digits = 1 - std::floor(std::log10(step));
   format.digits = static_cast<int>(std::clamp(digits, 0.0, static_cast<double>(kMostDigits)));
   return format;

@@ -1,4 +1,4 @@
-// Numbers as people read them: in legends.
+// Formats numbers for people, for example in legends.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -9,29 +9,30 @@
 
 namespace trapeze {
 
-/// A part of what d3-format takes: [,][.DIGITS][TYPE], such as ",.1f", ".0%", ".3s" or ",".
+/// A subset of d3-format: [,][.DIGITS][TYPE], such as ",.1f", ".0%", ".3s" or ",".
 struct NumberFormat {
-  bool has_groups = false;    // "," between each three digits
-  std::optional<int> digits;  // 0 to 9: after the point; of SI, significant ones
+  bool has_groups = false;    // "," between groups of three digits
+  std::optional<int> digits;  // 0 to 9: decimals; for SI, significant digits
   enum class Type : std::uint8_t {
-    fixed,    // "f", or nothing
-    percent,  // "%": a hundred times as much, with the sign
-    si,       // "s": with the prefix of a power of a thousand, "12.3M"
+    fixed,    // "f", or empty
+    percent,  // "%": multiplied by 100, with a percent sign
+    si,       // "s": with an SI prefix, "12.3M"
   } type = Type::fixed;
 
   friend bool operator==(const NumberFormat&, const NumberFormat&) = default;
 };
 
-/// Nothing for what is no format.
+/// Nothing if the text is not a valid format.
 std::optional<NumberFormat> parse_number_format(std::string_view text);
-/// Reads back as the same.
+/// Text that is parsed as the same format.
 std::string number_format_text(const NumberFormat& format);
 
-/// `number` is finite. Without digits, as many as it takes to tell it from all others, but six
-/// after the point at most.
+/// `number` must be finite. Without digits, writes as many as needed to distinguish it from all
+/// other numbers, but at most six decimals.
 std::string formatted(double number, const NumberFormat& format);
 
-/// For numbers that are `step` > 0 apart: with groups, and as many digits as tell them apart.
+/// A format for numbers that are `step` > 0 apart: with groups, and as many digits as needed to
+/// distinguish them.
 NumberFormat format_for_step(double step);
 
 }  // namespace trapeze

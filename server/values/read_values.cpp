@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 constexpr std::size_t kMaxNameBytes = 128;
 
-// What browsers, spreadsheets and curl call CSV, or call anything.
+// The types that browsers, spreadsheets and curl use for CSV, or for anything.
 constexpr std::array<std::string_view, 5> kCsvTypes = {
     "text/csv", "application/csv", "text/tab-separated-values", "text/comma-separated-values",
     "application/vnd.ms-excel"};
@@ -39,7 +39,7 @@ std::string_view without_mark(std::string_view text) {
   return text;
 }
 
-/// The length of the character that begins `text`; 0 if it is not UTF-8.
+/// The length of the character at the beginning of `text`; 0 if it is not valid UTF-8.
 std::size_t character_length(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -49,7 +49,7 @@ std::size_t character_length(std::string_view text) {
   for (std::size_t i = 1; i < length; ++i) {
     if ((byte(i) & 0xc0) != 0x80) return 0;
   }
-  // Too long a form, half of a surrogate pair, beyond U+10FFFF.
+  // Overlong forms, surrogates, and code points beyond U+10FFFF.
   if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
       (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90)) {
     return 0;
@@ -57,7 +57,7 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
-/// Whether a whole word of it is ASCII, as most of a table is.
+/// Whether the first 8 bytes are ASCII, as in most of a table.
 bool begins_with_ascii(std::string_view text) {
   std::uint64_t word = 0;
   if (text.size() < sizeof word) return false;
@@ -65,7 +65,7 @@ bool begins_with_ascii(std::string_view text) {
   return (word & 0x8080808080808080) == 0;
 }
 
-/// The first byte that is not UTF-8.
+/// The position of the first byte that is not valid UTF-8.
 std::optional<std::size_t> find_foreign_byte(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     if (begins_with_ascii(text.substr(i))) {
@@ -90,7 +90,7 @@ bool is_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// The places of the key and the value among the columns.
+/// The indexes of key and value among the columns.
 struct Places {
   std::size_t key = 0;
   std::size_t value = 1;
@@ -151,7 +151,7 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
   }
   const auto places = find_places(names, options.columns);
   if (!places) return places.problem();
-  // It would be lost as a row.
+  // Otherwise this row would be lost.
   if (is_number(names[places->value])) {
     return Problem{400, fmt::format("The first line must name the columns, but \"{}\" looks like a "
                                     "value: add a header line such as \"key,value\".",

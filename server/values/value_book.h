@@ -1,4 +1,4 @@
-// Tables that were posted, by their ids, within a budget of memory.
+// Posted tables by id, within a memory budget.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -15,28 +15,28 @@
 
 namespace trapeze {
 
-/// Tables of the configuration, by their names.
+/// A table of the configuration.
 struct NamedTable {
   std::shared_ptr<const ValueTable> table;
-  std::string title;        // what its values are, for people
-  std::string attribution;  // what maps must say about where they are from
-  /// The same values in other languages, by their tags: what labels say in them.
+  std::string title;        // of its values, for people
+  std::string attribution;  // attribution required on maps that use the values
+  /// The same values in other languages, by language tag: used for labels.
   std::map<std::string, std::shared_ptr<const ValueTable>, std::less<>> languages = {};
 };
 using NamedTables = std::map<std::string, NamedTable, std::less<>>;
 
 class ValueBook {
  public:
-  /// `budget` in bytes: of the tables, those not asked for longest go first.
+  /// `budget` is in bytes; the least recently used tables are removed first.
   explicit ValueBook(std::size_t budget) : posted_(budget) {}
 
-  /// Keeps the table under its id, and answers with it as it is kept. The problem, 403 or 413, is
-  /// one that is larger than the budget.
+  /// Stores the table under its id, and returns the stored table. The problem, 403 or 413, is a
+  /// table larger than the budget.
   Result<std::shared_ptr<const ValueTable>> post(ValueTable table);
 
-  /// Null if there is none of that id.
+  /// Null if there is no table with that id.
   std::shared_ptr<const ValueTable> find(const std::string& id) const;
-  /// Bytes held.
+  /// Memory in bytes.
   std::size_t memory() const;
 
  private:

@@ -53,7 +53,7 @@ ValueSpread spread_of(const Layer& layer, int field) {
 std::vector<std::size_t> histogram(const ValueSpread& spread, std::size_t bins) {
   std::vector<std::size_t> counts(bins, 0);
   if (spread.is_empty()) return counts;
-  // Halves, so that the width of all doubles is one, too.
+  // Halved, so that the width does not overflow for any doubles.
   const double half_width = spread.greatest() / 2 - spread.least() / 2;
   for (std::size_t i = 0; i < spread.values.size(); ++i) {
     const double share =

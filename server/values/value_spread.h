@@ -1,4 +1,4 @@
-// How numbers lie, whatever they belong to: what classes and histograms are made of.
+// The distribution of numbers, as needed for classes and histograms.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -13,10 +13,10 @@
 namespace trapeze {
 
 struct ValueSpread {
-  std::vector<double> values;         // ascending, each once; all are finite
+  std::vector<double> values;         // ascending, distinct and finite
   std::vector<std::uint32_t> counts;  // how often each of them occurs
-  std::size_t count = 0;              // of numbers in all
-  std::size_t missing = 0;            // where there might have been one
+  std::size_t count = 0;              // of all numbers, duplicates included
+  std::size_t missing = 0;            // places without a number
 
   bool is_empty() const { return values.empty(); }
   double least() const { return values.front(); }
@@ -25,10 +25,10 @@ struct ValueSpread {
   std::size_t memory() const;
 };
 
-/// What is not finite counts as missing.
+/// Numbers that are not finite count as missing.
 ValueSpread spread_of(std::vector<double> numbers, std::size_t missing);
 
-/// Takes values one after the other; what is no number counts as missing.
+/// Collects single values; values that are not numbers count as missing.
 class SpreadCollector {
  public:
   void add(const Value& value);
@@ -39,10 +39,11 @@ class SpreadCollector {
   std::size_t missing_ = 0;
 };
 
-/// The same of an attribute of numbers, of all features of the layer.
+/// The distribution of a numeric attribute over all features of the layer.
 ValueSpread spread_of(const Layer& layer, int field);
 
-/// How many numbers lie in each of `bins` >= 1 parts of equal width from the least to the greatest.
+/// The count of numbers in each of `bins` >= 1 intervals of equal width from the least to the
+/// greatest number.
 std::vector<std::size_t> histogram(const ValueSpread& spread, std::size_t bins);
 
 }  // namespace trapeze

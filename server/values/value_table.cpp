@@ -19,10 +19,10 @@ namespace {
 
 constexpr std::uint32_t kFree = 0xffffffff;
 constexpr std::size_t kMostDoublesNamed = 10;
-constexpr std::size_t kLongestNumber = 64;  // bytes; more digits than a double could need
+constexpr std::size_t kLongestNumber = 64;  // bytes; more digits than a double needs
 
-// Of numbers only: in a table of words, these are words. As R, pandas, spreadsheets, the World Bank
-// and Eurostat write that there is no number.
+// In numeric columns only: in a table of words, these are words. Used for missing numbers by R,
+// pandas, spreadsheets, the World Bank and Eurostat.
 constexpr std::array<std::string_view, 9> kMissing = {"na", "n/a",  "#n/a", "nan", "null",
                                                       "-",  "none", "..",   ":"};
 
@@ -37,7 +37,7 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-/// With a point in the place of the comma.
+/// The number with a point in place of a decimal comma.
 class PlainNumber {
  public:
   PlainNumber(std::string_view text, bool has_decimal_commas) : text_(text) {
@@ -66,14 +66,14 @@ class PlainNumber {
 
 enum class CellKind { missing, integer, real, endless, word };
 
-/// What a value is, and its number if it is one.
+/// The kind of a value, and its number if it is one.
 struct Cell {
   CellKind kind = CellKind::missing;
   std::int64_t integer = 0;
   double real = 0;
 };
 
-/// -0 is 0.
+/// -0 becomes 0.
 std::uint64_t bits_of(double number) {
   return std::bit_cast<std::uint64_t>(number + 0.0);
 }
@@ -115,7 +115,7 @@ Value ValueTable::value(std::uint32_t row) const {
 
 std::optional<std::uint32_t> ValueTable::find(std::string_view wanted) const {
   if (slots_.empty()) return std::nullopt;
-  // At most half of the slots are taken, so that a search always ends.
+  // At most half of the slots are occupied, so a search always ends.
   const std::size_t mask = slots_.size() - 1;
   std::size_t slot = seeded_hash(wanted) & mask;
   while (slots_[slot] != kFree) {
@@ -172,7 +172,7 @@ std::optional<Problem> ValueTableBuilder::add(std::string_view key, std::string_
   table_.text_ += value;
   places_.push_back(static_cast<std::uint32_t>(place));
   if (insert(key, row)) return std::nullopt;
-  // It is told at the end, with the others.
+  // Reported at the end, together with the others.
   if (++doubles_ <= kMostDoublesNamed) {
     double_keys_ += fmt::format("{}{} (rows {} and {})", double_keys_.empty() ? "" : ", ", key,
                                 places_[*table_.find(key)], place);
@@ -180,7 +180,7 @@ std::optional<Problem> ValueTableBuilder::add(std::string_view key, std::string_
   return std::nullopt;
 }
 
-/// False if the key is there already.
+/// False if the key already exists.
 bool ValueTableBuilder::insert(std::string_view key, std::uint32_t row) {
   if (table_.slots_.size() < 2 * (std::size_t{row} + 1)) grow_slots(2 * (std::size_t{row} + 1));
   const std::size_t mask = table_.slots_.size() - 1;
@@ -224,7 +224,7 @@ Result<ValueTable> ValueTableBuilder::finish() && {
   return std::move(table_);
 }
 
-/// Numbers, if all values are; the problem is one that would be, and has no end.
+/// Numeric if all values are numbers; the problem is an infinite number in such a table.
 std::optional<Problem> ValueTableBuilder::find_type() {
   bool has_words = false;
   bool has_reals = false;
@@ -236,7 +236,7 @@ std::optional<Problem> ValueTableBuilder::find_type() {
     const Cell cell = read_cell(text_of_value(row), has_decimal_commas_);
     has_value[row] = cell.kind != CellKind::missing;
     if (cell.kind == CellKind::real && !has_reals) {
-      has_reals = true;  // and those before it are, too
+      has_reals = true;  // all values before it become reals as well
       for (std::uint32_t before = 0; before < row; ++before) {
         numbers[before] =
             bits_of(static_cast<double>(std::bit_cast<std::int64_t>(numbers[before])));
@@ -273,7 +273,7 @@ std::string_view ValueTableBuilder::text_of_value(std::uint32_t row) const {
   return std::string_view(table_.text_).substr(place.begin + place.key_size, place.value_size);
 }
 
-/// Of numbers: keys are all that is left of it, and move together.
+/// For numbers: removes everything but the keys from the text, and moves these together.
 void ValueTableBuilder::give_up_text() {
   std::string& text = table_.text_;
   std::uint32_t end = 0;
@@ -285,8 +285,7 @@ void ValueTableBuilder::give_up_text() {
   text.resize(end);
 }
 
-/// Of all that makes the table: keys, and words behind them, stand in the text in the order of
-/// rows.
+/// A digest of the whole contents: keys, each followed by its word, are in the text in row order.
 std::string ValueTableBuilder::identity() const {
   const std::string head = fmt::format(
       "{}:{} {}:{} {} {} ", table_.names_.key.size(), table_.names_.key, table_.names_.value.size(),
