@@ -105,6 +105,8 @@ class Reloader {
   bool follow_live();
   void note_of_databases(const std::string& problem);
   void watch_databases();
+  /// Tells of files that are mapped and have been damaged, once of each state.
+  void look_for_damage();
   void forget_retired();
   void note(const std::string& problem);
 
@@ -126,6 +128,7 @@ class Reloader {
   std::string state_seen_;  // of the files at the last look
   Clock::time_point last_look_;
   Clock::time_point last_load_;
+  Clock::time_point last_look_for_damage_;
   std::vector<LiveLayer> live_;
 
   std::atomic<bool> is_loading_ = true;
@@ -135,6 +138,7 @@ class Reloader {
   bool is_stopping_ = false;
   bool has_ended_ = true;         // the thread, or it has not been started
   std::string problem_;           // with reading the layers
+  std::string damage_;            // to files of the layers that are served
   std::string database_problem_;  // with asking what has changed
   std::optional<Question> question_;
   std::exception_ptr failure_;

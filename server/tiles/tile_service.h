@@ -2,7 +2,8 @@
 //
 // Dear tiles have a queue of their own, and half of the workers at most: cheap ones go on being
 // drawn beside them. Large tiles are drawn in bands, with the help of workers that have nothing
-// else to do.
+// else to do. Labels that nobody has asked for yet are placed by a thread of its own, which may
+// take longer than anybody waits: meanwhile tiles with such labels wait, and no worker does.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -42,16 +43,20 @@ enum class TileOutcome : std::uint8_t {
   saturated,  // the queue is full, or the service is stopping: worth asking again
   late,       // past the deadline, before it was drawn or while it was
   withdrawn,  // by who asked
+  placing,    // past the deadline, while its labels were being placed: worth asking again
+  damaged,    // of a file that is cut off or written into, which has been logged
   failed,     // an error of ours, which has been logged
 };
 
-inline constexpr NameTable<TileOutcome, 7> kTileOutcomeNames({
+inline constexpr NameTable<TileOutcome, 9> kTileOutcomeNames({
     {"drawn", TileOutcome::drawn},
     {"kept", TileOutcome::kept},
     {"held", TileOutcome::held},
     {"saturated", TileOutcome::saturated},
     {"late", TileOutcome::late},
     {"withdrawn", TileOutcome::withdrawn},
+    {"placing", TileOutcome::placing},
+    {"damaged", TileOutcome::damaged},
     {"failed", TileOutcome::failed},
 });
 
@@ -185,6 +190,9 @@ class TileService {
   void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
   void stop_workers();
   void work(TilePainter& painter);
+  /// Places the labels of what waits for them, until the service stops.
+  void place_labels();
+  bool has_labels(const TilePlan& plan) const;
   /// What a worker is to do next: flights to draw together, or else bands to help with.
   struct Work {
     Flights flights;
@@ -192,11 +200,17 @@ class TileService {
   };
   /// Of up to so many flights; false when the service stops.
   bool take(std::size_t most, Work& work);
+  /// Waits until there is something to take, and answers what has waited too long for its labels.
+  void wait_for_work(std::unique_lock<std::mutex>& lock);
   bool may_take_dear() const;
   Queue& queue_of(Cost cost) { return cost == Cost::cheap ? queue_ : dear_queue_; }
   /// How many of those that wait one worker should take, so that all workers have some.
   std::size_t share_of_queue() const;
-  /// The three below are called with the mutex locked.
+  /// The five below are called with the mutex locked.
+  /// What waits for labels that are there by now, and `placed`, waits for a worker.
+  void queue_placed(const std::shared_ptr<Flight>& placed);
+  /// One that has waited too long for its labels, and does not any more; null if there is none.
+  std::shared_ptr<Flight> take_late();
   Ticket join(const std::shared_ptr<Flight>& flight, Clock::time_point now, Asker asker) const;
   void give_up(const std::shared_ptr<Flight>& flight);
   void forget(const std::shared_ptr<Flight>& flight);
@@ -225,6 +239,7 @@ class TileService {
   const std::shared_ptr<FeatureClassCache> classes_;
   const std::size_t workers_;
   std::vector<std::thread> threads_;
+  std::thread placer_;
 
   std::mutex identifying_;  // guards those below, which find fingerprints and draw nothing
   std::vector<std::unique_ptr<TilePainter>> idle_identifiers_;
@@ -235,6 +250,8 @@ class TileService {
   std::deque<std::shared_ptr<Bands>> bands_;  // those of which not all have been taken
   Queue queue_;
   Queue dear_queue_;
+  std::condition_variable labels_wanted_;
+  Queue awaiting_labels_;         // of either cost
   std::size_t drawing_ = 0;       // tiles that workers have taken
   std::size_t dear_drawing_ = 0;  // the dear ones of these
   std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // queued or being drawn
