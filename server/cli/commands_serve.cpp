@@ -112,10 +112,10 @@ LayerSource layer_source(const ServeArguments& arguments, const Config& running)
 }
 
 [[noreturn]] void end_now(ServerLog& log) {
-  // Neither reading a large file nor waiting for a database can be interrupted, and what comes of
-  // it is not needed any more. The thread that reads must not meet objects that are being
-  // destroyed: so none are.
-  spdlog::info("stopped while loading");
+  // Neither reading a large file, nor placing its labels, nor waiting for a database can be
+  // interrupted, and what comes of it is not needed any more. The thread that reads or places must
+  // not meet objects that are being destroyed: so none are.
+  spdlog::info("stopped while loading or placing labels");
   log.flush();
   std::quick_exit(0);
 }

@@ -45,9 +45,9 @@ class Service {
   /// Reads the layers again, and opens the log of requests again. From any thread.
   void reload();
 
-  /// After run(): ends what goes on beside requests. False if layers are still being read, which
-  /// cannot be interrupted: then the service must not be destroyed, but all it has logged has been
-  /// written and no command for changes runs any more.
+  /// After run(): ends what goes on beside requests. False if layers are still being read, or
+  /// labels placed, which cannot be interrupted: then the service must not be destroyed, but all it
+  /// has logged has been written and no command for changes runs any more.
   bool finish();
 
   /// Whether layers are being read at this moment.

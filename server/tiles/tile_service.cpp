@@ -98,6 +98,7 @@ void TileService::place_labels() {
     labels_wanted_.wait(lock, [this] { return is_stopping_ || !awaiting_labels_.empty(); });
     if (is_stopping_) return;
     const std::shared_ptr<Flight> flight = awaiting_labels_.front();
+    is_placing_ = true;
     lock.unlock();
     // If it fails, for lack of memory, the worker that draws the tile tries again.
     attempt([&] {
@@ -105,9 +106,15 @@ void TileService::place_labels() {
       options_.labels->find({*plan.dataset, plan.labels, plan.view, plan.scale});
     });
     lock.lock();
+    is_placing_ = false;
     queue_placed(flight);
     wake_.notify_all();
   }
+}
+
+bool TileService::is_placing() const {
+  const std::lock_guard lock(mutex_);
+  return is_placing_ || !awaiting_labels_.empty();
 }
 
 void TileService::queue_placed(const std::shared_ptr<Flight>& placed) {

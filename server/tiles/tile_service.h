@@ -147,6 +147,10 @@ class TileService {
   /// that no tile has to wait for that.
   void place_usual_labels(const std::shared_ptr<const Dataset>& dataset);
 
+  /// Whether labels are being placed for tiles, which cannot be interrupted: the service ends only
+  /// after that.
+  bool is_placing() const;
+
   /// See LabelBook::cost_of().
   std::uint64_t cost_of_labels(const TilePlan& plan) const;
 
@@ -251,7 +255,8 @@ class TileService {
   Queue queue_;
   Queue dear_queue_;
   std::condition_variable labels_wanted_;
-  Queue awaiting_labels_;         // of either cost
+  Queue awaiting_labels_;  // of either cost
+  bool is_placing_ = false;
   std::size_t drawing_ = 0;       // tiles that workers have taken
   std::size_t dear_drawing_ = 0;  // the dear ones of these
   std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // queued or being drawn
