@@ -331,7 +331,6 @@ TEST_F(LayerInThreeParts, SaysFromTheFirstTileOnThatAPartIsDamaged) {
     EXPECT_EQ(answer.status, 503);
     EXPECT_THAT(*answer.body, ::testing::HasSubstr("prepared again"));
   }
-  EXPECT_EQ(site.get("/tiles/places/0/0/0.png").status, 200) << "the overview is whole";
   EXPECT_THAT(damage_of(parts_->layers()[0]),
               ::testing::AllOf(::testing::StartsWith(path), ::testing::HasSubstr("is damaged")));
 }
