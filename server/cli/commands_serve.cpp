@@ -113,10 +113,10 @@ LayerSource layer_source(const ServeArguments& arguments, const Config& running)
 }
 
 [[noreturn]] void end_now(ServerLog& log) {
-  // Neither reading a large file nor waiting for a database can be interrupted, and the result is
-  // not needed any more. Objects must not be destroyed while the reading thread uses them, so none
-  // are destroyed.
-  spdlog::info("stopped while loading");
+  // Neither reading a large file, nor placing its labels, nor waiting for a database can be
+  // interrupted, and the result is not needed any more. Objects must not be destroyed while the
+  // thread that reads or places uses them, so none are destroyed.
+  spdlog::info("stopped while loading or placing labels");
   log.flush();
   std::quick_exit(0);
 }

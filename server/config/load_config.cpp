@@ -620,7 +620,10 @@ bool is_file_path(const std::string& source) {
 
 LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverride>& overrides) {
   LoadedConfig loaded;
-  if (!path.empty()) {
+  std::error_code error;  // then it is told when the file is opened
+  if (std::filesystem::is_directory(path, error)) {
+    loaded.problems.push_back({path, "cannot read the configuration: it is a folder"});
+  } else if (!path.empty()) {
     read_toml(
         path, [&path] { return toml::parse_file(path); }, loaded);
   }

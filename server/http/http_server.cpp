@@ -88,6 +88,14 @@ std::string list_of(const http::request<http::string_body>& message, beast::stri
   return list;
 }
 
+/// The size of request line and headers, as received except for white space.
+std::size_t header_bytes(const http::request<http::string_body>& message) {
+  constexpr std::size_t kAroundLine = 13;  // " ", " HTTP/1.1", "\r\n"... and the empty line
+  std::size_t bytes = message.method_string().size() + message.target().size() + kAroundLine;
+  for (const auto& field : message) bytes += field.name_string().size() + field.value().size() + 4;
+  return bytes;
+}
+
 /// The interval between checks: short enough that no timeout is exceeded by much.
 std::chrono::milliseconds round_for(const HttpServerOptions& options) {
   const auto shortest =
@@ -227,6 +235,15 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   void read();
   void await_first_byte();
   void read_request();
+  /// Takes all of the request except its body. Fields that a client sends behind a chunked body
+  /// (RFC 9110, section 6.5) are therefore never treated as headers: a proxy in front of the server
+  /// has not inspected them.
+  void take_header();
+  void forget_header();
+  /// Why the request is refused whatever its body is, if it is.
+  std::optional<Problem> problem_of_header() const;
+  /// Answers without reading any further.
+  void refuse_unread(const Problem& problem);
   /// Answers a client that waits for permission to send its body (RFC 9110, section 10.1.1).
   void ask_for_body();
   void read_body();
@@ -241,7 +258,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   /// Whether the request line exceeded the limit, not the fields after it.
   bool is_request_line_too_long() const;
   Problem target_too_long() const;
-  void handle(http::request<http::string_body>& message);
+  Problem header_too_long() const;
+  void handle(std::string body);
   ClientAddress client_of(const http::request<http::string_body>& message) const;
   /// Watches for the client to disconnect until the response is sent.
   void watch_for_disconnection();
@@ -267,6 +285,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
 
   // The request being answered.
   HttpRequest request_;
+  std::string referer_;
+  std::string user_agent_;
   Clock::time_point begin_;
   unsigned version_ = 11;
   bool keep_alive_ = false;
@@ -338,7 +358,10 @@ void HttpServer::Connection::await_first_byte() {
 void HttpServer::Connection::read_request() {
   allow(state_.options().read_timeout);
   const auto on_header = [this](const ErrorCode& error) {
-    if (error || parser_->is_done()) return on_read(error);
+    if (error) return on_read(error);
+    take_header();
+    if (const auto problem = problem_of_header()) return refuse_unread(*problem);
+    if (parser_->is_done()) return on_read({});
     ask_for_body();
   };
   ErrorCode error;
@@ -364,13 +387,15 @@ bool HttpServer::Connection::has_room_for_body() {
   if (body_limit() <= usual || (length && *length <= usual)) return true;
   has_room_ = state_.take_room(peer_, is_trusted_);
   if (has_room_) return true;
+  refuse_unread({503, "Too many large bodies are being posted. Try again."});
+  return false;
+}
+
+void HttpServer::Connection::refuse_unread(const Problem& problem) {
   is_reading_ = false;
   begin_ = Clock::now();
-  request_ = {};
-  request_.client = peer_;
   keep_alive_ = false;
-  send(problem_response({503, "Too many large bodies are being posted. Try again."}));
-  return false;
+  send(problem_response(problem));
 }
 
 void HttpServer::Connection::leave_room() {
@@ -406,12 +431,11 @@ void HttpServer::Connection::on_read(const ErrorCode& error) {
   allow_any_time();
   is_answered_ = false;
   if (error) return answer_unreadable(error);
-  handle(parser_->get());
+  handle(std::move(parser_->get().body()));
 }
 
 void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
-  request_ = {};
-  request_.client = peer_;
+  if (!parser_->is_header_done()) forget_header();
   keep_alive_ = false;
   if (error == http::error::end_of_stream) return close_gently();
   if (error == http::error::partial_message || !is_http_error(error)) return;  // nobody listens
@@ -419,10 +443,7 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
   if (error == http::error::body_limit) {
     problem = {413, fmt::format("The body of a request can have at most {} bytes.", body_limit())};
   } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    problem = is_request_line_too_long()
-                  ? target_too_long()
-                  : Problem{431, fmt::format("Request line and headers can have at most {} bytes.",
-                                             state_.options().header_limit)};
+    problem = header_too_long();
   }
   send(problem_response(problem));
 }
@@ -438,24 +459,55 @@ Problem HttpServer::Connection::target_too_long() const {
           fmt::format("Path and query can have at most {} bytes.", state_.options().target_limit)};
 }
 
-void HttpServer::Connection::handle(http::request<http::string_body>& message) {
-  const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
-  request_ = {text(message.method_string()),
-              text(message.target()),
-              text(message[http::field::host]),
-              text(message[http::field::if_none_match]),
-              std::move(message.body()),
+Problem HttpServer::Connection::header_too_long() const {
+  if (is_request_line_too_long()) return target_too_long();
+  return {431, fmt::format("Request line and headers can have at most {} bytes.",
+                           state_.options().header_limit)};
+}
+
+void HttpServer::Connection::take_header() {
+  const http::request<http::string_body>& message = parser_->get();
+  const auto text = [&message](http::field name) { return std::string(view_of(message[name])); };
+  request_ = {std::string(view_of(message.method_string())),
+              std::string(view_of(message.target())),
+              text(http::field::host),
+              text(http::field::if_none_match),
+              {},
               client_of(message),
               std::make_shared<Disconnection>(),
               list_of(message, "Accept-Encoding"),
-              text(message[http::field::content_type]),
-              text(message[http::field::content_encoding])};
+              text(http::field::content_type),
+              text(http::field::content_encoding)};
+  referer_ = text(http::field::referer);
+  user_agent_ = text(http::field::user_agent);
   version_ = message.version();
   keep_alive_ = message.keep_alive();
+}
+
+void HttpServer::Connection::forget_header() {
+  request_ = {};
+  request_.client = peer_;
+  referer_.clear();
+  user_agent_.clear();
+}
+
+std::optional<Problem> HttpServer::Connection::problem_of_header() const {
+  const http::request<http::string_body>& message = parser_->get();
+  // The parser applies the limit to single fields only.
+  if (header_bytes(message) > state_.options().header_limit) return header_too_long();
   if (version_ >= 11 && message.count(http::field::host) != 1) {
-    keep_alive_ = false;
-    return send(problem_response({400, "A request needs exactly one Host header."}));
+    return Problem{400, "A request needs exactly one Host header."};
   }
+  if (message.count(http::field::transfer_encoding) == 0) return std::nullopt;
+  // A proxy in front of this server could disagree about where the body ends, and part of the body
+  // could be taken for a request (RFC 9112, sections 6.1 and 6.3).
+  if (version_ < 11) return Problem{400, "HTTP/1.0 has no Transfer-Encoding."};
+  if (beast::iequals(list_of(message, "Transfer-Encoding"), "chunked")) return std::nullopt;
+  return Problem{501, "The only supported Transfer-Encoding is chunked."};
+}
+
+void HttpServer::Connection::handle(std::string body) {
+  request_.body = std::move(body);
   if (request_.target.size() > state_.options().target_limit) {
     return send(problem_response(target_too_long()));
   }
@@ -572,11 +624,7 @@ void HttpServer::Connection::discard_input() {
 
 void HttpServer::Connection::tell(const HttpResponse& response) const {
   if (!state_.observer()) return;
-  const auto field = [this](http::field name) {
-    return parser_ ? view_of(parser_->get()[name]) : std::string_view();
-  };
-  state_.observer()({request_, response, Clock::now() - begin_, version_,
-                     field(http::field::referer), field(http::field::user_agent)});
+  state_.observer()({request_, response, Clock::now() - begin_, version_, referer_, user_agent_});
 }
 
 HttpServer::State::State(const HttpServerOptions& options, Handler handler, Observer observer)

@@ -1,6 +1,7 @@
 #include "server/service/reloader.h"
 #include "server/base/failure_words.h"
 #include "server/base/heap.h"
+#include "server/data/layer_damage.h"
 #include "server/data/named_tables.h"
 #include "server/data/source_files.h"
 
@@ -91,7 +92,8 @@ void Reloader::rethrow_failure() const {
 
 std::string Reloader::last_problem() const {
   const std::lock_guard lock(mutex_);
-  return problem_.empty() ? database_problem_ : problem_;
+  if (!problem_.empty()) return problem_;
+  return damage_.empty() ? database_problem_ : damage_;
 }
 
 void Reloader::work() {
@@ -274,6 +276,7 @@ std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>&
 bool Reloader::wait_for_a_reason() {
   while (true) {
     forget_retired();  // here, so that it is done however often reloads are requested
+    look_for_damage();
     {
       std::unique_lock lock(mutex_);
       const auto tick = pace_.watch.count() > 0 ? pace_.watch : kTick;
@@ -296,6 +299,22 @@ bool Reloader::wait_for_a_reason() {
       return true;
     }
   }
+}
+
+void Reloader::look_for_damage() {
+  if (Clock::now() < last_look_for_damage_ + kTick) return;
+  last_look_for_damage_ = Clock::now();
+  std::string damage;
+  for (const ServedLayer& served : data_.get()->layers_on_all_grids()) {
+    damage = damage_of(served);
+    if (!damage.empty()) break;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (damage == damage_) return;
+    damage_ = damage;
+  }
+  if (!damage.empty()) spdlog::error("{}", damage);
 }
 
 bool Reloader::has_settled_change() {

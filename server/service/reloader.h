@@ -106,6 +106,8 @@ class Reloader {
   bool follow_live();
   void note_of_databases(const std::string& problem);
   void watch_databases();
+  /// Tells of files that are mapped and have been damaged, once of each state.
+  void look_for_damage();
   void forget_retired();
   void note(const std::string& problem);
 
@@ -127,6 +129,7 @@ class Reloader {
   std::string state_seen_;  // of the files at the last check
   Clock::time_point last_look_;
   Clock::time_point last_load_;
+  Clock::time_point last_look_for_damage_;
   std::vector<LiveLayer> live_;
 
   std::atomic<bool> is_loading_ = true;
@@ -136,6 +139,7 @@ class Reloader {
   bool is_stopping_ = false;
   bool has_ended_ = true;         // the thread has ended or was never started
   std::string problem_;           // with reading the layers
+  std::string damage_;            // to files of served layers
   std::string database_problem_;  // with querying databases for changes
   std::optional<Question> question_;
   std::exception_ptr failure_;

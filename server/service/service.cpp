@@ -235,7 +235,7 @@ void Service::run() {
 }
 
 bool Service::finish() {
-  if (reloader_->end(kEnd)) return true;
+  if (reloader_->end(kEnd) && !tiles_->is_placing()) return true;
   if (changes_ != nullptr) changes_->end_command();
   if (access_log_ != nullptr) access_log_->flush();
   return false;

@@ -45,9 +45,9 @@ class Service {
   /// Reads the layers again and reopens the access log. From any thread.
   void reload();
 
-  /// Call after run(). Ends all background work. Returns false if layers are still being read,
-  /// which cannot be interrupted. In that case the service must not be destroyed; but everything it
-  /// has logged has been written, and no command for changes runs any more.
+  /// Call after run(). Ends all background work. Returns false if layers are still being read or
+  /// labels placed, which cannot be interrupted. In that case the service must not be destroyed; but
+  /// everything it has logged has been written, and no command for changes runs any more.
   bool finish();
 
   /// Whether layers are being read at the moment.

@@ -265,6 +265,13 @@ HttpResponse undrawn_response(TileOutcome outcome) {
       return problem_response({kClientGone, "The client has gone."});
     case TileOutcome::late:
       return problem_response({504, "The tile was not drawn in time."});
+    case TileOutcome::placing:
+      return problem_response({503, "The labels of this map are being placed. Ask again."});
+    case TileOutcome::damaged:
+      return problem_response(
+          {503,
+           "A file of what is asked for has been cut off or written into. It has "
+           "to be prepared again."});
     default:
       return problem_response({500, "The tile could not be drawn."});
   }

@@ -43,6 +43,9 @@ class NoRenderer final : public MaskRenderer {
   std::string identity_;
 };
 
+// How often tiles that wait for their labels are checked against their deadline.
+constexpr auto kLookForLate = std::chrono::milliseconds(50);
+
 /// Rules that name more features take too long to look up.
 constexpr std::size_t kFewIds = 1000;
 
@@ -70,6 +73,7 @@ void TileService::start_workers(std::vector<std::unique_ptr<MaskRenderer>> rende
         [this, painter = TilePainter(std::move(renderer), classes_, options_.fonts,
                                      options_.labels)]() mutable { work(painter); });
   }
+  placer_ = std::thread([this] { place_labels(); });
 }
 
 void TileService::stop_workers() {
@@ -79,7 +83,56 @@ void TileService::stop_workers() {
     for (const auto& [key, flight] : flights_) flight->cancellation.cancel();
   }
   wake_.notify_all();
+  labels_wanted_.notify_all();
   for (std::thread& thread : threads_) thread.join();
+  if (placer_.joinable()) placer_.join();
+}
+
+bool TileService::has_labels(const TilePlan& plan) const {
+  return options_.labels->has_placed({*plan.dataset, plan.labels, plan.view, plan.scale});
+}
+
+void TileService::place_labels() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    labels_wanted_.wait(lock, [this] { return is_stopping_ || !awaiting_labels_.empty(); });
+    if (is_stopping_) return;
+    const std::shared_ptr<Flight> flight = awaiting_labels_.front();
+    is_placing_ = true;
+    lock.unlock();
+    // If it fails, for lack of memory, the worker that draws the tile tries again.
+    attempt([&] {
+      const TilePlan& plan = flight->order.plan;
+      options_.labels->find({*plan.dataset, plan.labels, plan.view, plan.scale});
+    });
+    lock.lock();
+    is_placing_ = false;
+    queue_placed(flight);
+    wake_.notify_all();
+  }
+}
+
+bool TileService::is_placing() const {
+  const std::lock_guard lock(mutex_);
+  return is_placing_ || !awaiting_labels_.empty();
+}
+
+void TileService::queue_placed(const std::shared_ptr<Flight>& placed) {
+  std::erase_if(awaiting_labels_, [&](const std::shared_ptr<Flight>& flight) {
+    if (flight != placed && !has_labels(flight->order.plan)) return false;
+    queue_of(flight->order.cost).push_back(flight);
+    return true;
+  });
+}
+
+std::shared_ptr<TileService::Flight> TileService::take_late() {
+  const auto late = std::ranges::find_if(
+      awaiting_labels_,
+      [](const std::shared_ptr<Flight>& flight) { return flight->cancellation.is_over(); });
+  if (late == awaiting_labels_.end()) return nullptr;
+  std::shared_ptr<Flight> flight = std::move(*late);
+  awaiting_labels_.erase(late);
+  return flight;
 }
 
 bool TileService::is_quick_to_identify(const TilePlan& plan, std::uint64_t cost) const {
@@ -92,8 +145,7 @@ bool TileService::is_quick_to_identify(const TilePlan& plan, std::uint64_t cost)
            classes_->has(layer.revision, classing);
   };
   return cost <= kQuickToIdentify && !plan.debug.any() &&
-         std::ranges::all_of(plan.layers, is_quick) &&
-         options_.labels->has_placed({*plan.dataset, plan.labels, plan.view, plan.scale});
+         std::ranges::all_of(plan.layers, is_quick) && has_labels(plan);
 }
 
 std::optional<TileAnswer> TileService::answer_at_once(const TilePlan& plan, std::uint64_t cost,
@@ -138,13 +190,14 @@ std::string TileService::identify(const TilePlan& plan) {
 TileService::Ticket TileService::submit(Order order, Callback callback, Holds holds) {
   const auto now = Clock::now();
   Asker asker{std::move(callback), std::move(holds)};
+  const bool is_placed = has_labels(order.plan);
   {
     const std::lock_guard lock(mutex_);
     if (const auto found = flights_.find(order.key);
         found != flights_.end() && !found->second->cancellation.is_over()) {
       return join(found->second, now, std::move(asker));
     }
-    Queue& queue = queue_of(order.cost);
+    Queue& queue = is_placed ? queue_of(order.cost) : awaiting_labels_;
     if (queue.size() < options_.queue && !is_stopping_) {
       auto flight = std::make_shared<Flight>();
       flight->order = std::move(order);
@@ -158,6 +211,7 @@ TileService::Ticket TileService::submit(Order order, Callback callback, Holds ho
         throw;
       }
       wake_.notify_one();
+      if (!is_placed) labels_wanted_.notify_one();
       return ticket;
     }
   }
@@ -195,11 +249,12 @@ void TileService::withdraw(const Ticket& ticket) {
 // A waiting tile is removed immediately; a worker that is drawing one notices before long.
 void TileService::give_up(const std::shared_ptr<Flight>& flight) {
   flight->cancellation.cancel();
-  Queue& queue = queue_of(flight->order.cost);
-  const auto waiting = std::ranges::find(queue, flight);
-  if (waiting == queue.end()) return;
-  queue.erase(waiting);
-  forget(flight);
+  for (Queue* queue : {&queue_of(flight->order.cost), &awaiting_labels_}) {
+    const auto waiting = std::ranges::find(*queue, flight);
+    if (waiting == queue->end()) continue;
+    queue->erase(waiting);
+    return forget(flight);
+  }
 }
 
 void TileService::forget(const std::shared_ptr<Flight>& flight) {
@@ -225,7 +280,7 @@ std::uint64_t TileService::cost_of_labels(const TilePlan& plan) const {
 
 TileService::Figures TileService::figures() const {
   const std::lock_guard lock(mutex_);
-  return {queue_.size() + dear_queue_.size(), drawing_};
+  return {queue_.size() + dear_queue_.size() + awaiting_labels_.size(), drawing_};
 }
 
 void TileService::tell(const TileAnswer& answer) const {
@@ -252,9 +307,7 @@ void TileService::work(TilePainter& painter) {
 bool TileService::take(std::size_t most, Work& work) {
   Flights& flights = work.flights;
   std::unique_lock lock(mutex_);
-  wake_.wait(lock, [this] {
-    return is_stopping_ || !queue_.empty() || may_take_dear() || !bands_.empty();
-  });
+  wait_for_work(lock);
   if (is_stopping_) return false;
   if (may_take_dear()) {
     ++dear_drawing_;
@@ -274,6 +327,20 @@ bool TileService::take(std::size_t most, Work& work) {
   }
   drawing_ += count;
   return true;
+}
+
+void TileService::wait_for_work(std::unique_lock<std::mutex>& lock) {
+  while (!is_stopping_ && queue_.empty() && !may_take_dear() && bands_.empty()) {
+    if (const auto flight = take_late()) {
+      lock.unlock();
+      land(flight, {TileOutcome::placing, {}});
+      lock.lock();
+    } else if (awaiting_labels_.empty()) {
+      wake_.wait(lock);
+    } else {
+      wake_.wait_for(lock, kLookForLate);
+    }
+  }
 }
 
 // A single worker draws cheap tiles first, but not forever.
@@ -335,7 +402,11 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
   } catch (const std::exception& error) {
     spdlog::error("tile {}{} cannot be drawn: {}", flights.front()->order.key,
                   flights.size() > 1 ? " or one drawn with it" : "", error.what());
-    answers.assign(flights.size(), TileAnswer{});
+    answers.clear();
+    for (const auto& flight : flights) {
+      const bool is_damaged = flight->order.plan.damaged_layer() != nullptr;
+      answers.push_back({is_damaged ? TileOutcome::damaged : TileOutcome::failed, {}});
+    }
   }
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const auto waited = begin - flights[i]->submitted;
@@ -459,7 +530,7 @@ void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>
     if (damaged == nullptr) continue;
     spdlog::error("{} was modified while it was served; run `trapeze prepare` again",
                   damaged->report.path);
-    answers[i] = TileAnswer{};
+    answers[i] = TileAnswer{TileOutcome::damaged, {}};
   }
 }
 
@@ -482,7 +553,7 @@ void TileService::land(const std::shared_ptr<Flight>& flight, TileAnswer answer)
 
 TileService::~TileService() {
   stop_workers();
-  for (Queue* queue : {&queue_, &dear_queue_}) {
+  for (Queue* queue : {&queue_, &dear_queue_, &awaiting_labels_}) {
     while (!queue->empty()) {
       const auto flight = std::move(queue->front());
       queue->pop_front();

@@ -2,7 +2,8 @@
 //
 // Expensive tiles have a queue of their own and use at most half of the workers, so that cheap
 // tiles continue to be drawn meanwhile. Large tiles are drawn in bands, with the help of idle
-// workers.
+// workers. Labels that are requested for the first time are placed by a separate thread, which may
+// take longer than any deadline: meanwhile tiles with such labels wait, without a worker.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -42,16 +43,20 @@ enum class TileOutcome : std::uint8_t {
   saturated,  // the queue is full, or the service is stopping: retrying may help
   late,       // the deadline passed before or during drawing
   withdrawn,  // by the client
+  placing,    // the deadline passed while its labels were being placed: retrying may help
+  damaged,    // its file is truncated or modified, which has been logged
   failed,     // an internal error, which has been logged
 };
 
-inline constexpr NameTable<TileOutcome, 7> kTileOutcomeNames({
+inline constexpr NameTable<TileOutcome, 9> kTileOutcomeNames({
     {"drawn", TileOutcome::drawn},
     {"kept", TileOutcome::kept},
     {"held", TileOutcome::held},
     {"saturated", TileOutcome::saturated},
     {"late", TileOutcome::late},
     {"withdrawn", TileOutcome::withdrawn},
+    {"placing", TileOutcome::placing},
+    {"damaged", TileOutcome::damaged},
     {"failed", TileOutcome::failed},
 });
 
@@ -145,6 +150,10 @@ class TileService {
   /// no tile has to wait for it.
   void place_usual_labels(const std::shared_ptr<const Dataset>& dataset);
 
+  /// Whether labels are being placed for tiles, which cannot be interrupted: the service ends only
+  /// after that.
+  bool is_placing() const;
+
   /// See LabelBook::cost_of().
   std::uint64_t cost_of_labels(const TilePlan& plan) const;
 
@@ -188,6 +197,9 @@ class TileService {
   void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
   void stop_workers();
   void work(TilePainter& painter);
+  /// Places the labels of tiles that wait for them, until the service stops.
+  void place_labels();
+  bool has_labels(const TilePlan& plan) const;
   /// The next work of a worker: flights to draw together, or else bands to help with.
   struct Work {
     Flights flights;
@@ -195,11 +207,17 @@ class TileService {
   };
   /// Takes up to `most` flights; false when the service stops.
   bool take(std::size_t most, Work& work);
+  /// Waits until there is something to take, and answers what has waited too long for its labels.
+  void wait_for_work(std::unique_lock<std::mutex>& lock);
   bool may_take_dear() const;
   Queue& queue_of(Cost cost) { return cost == Cost::cheap ? queue_ : dear_queue_; }
   /// How many waiting tiles one worker should take, so that all workers get some.
   std::size_t share_of_queue() const;
-  /// Call these three with the mutex locked.
+  /// Call these five with the mutex locked.
+  /// Queues for a worker `placed` and all waiting tiles whose labels have been placed by now.
+  void queue_placed(const std::shared_ptr<Flight>& placed);
+  /// Removes and returns a tile that has waited too long for its labels; null if there is none.
+  std::shared_ptr<Flight> take_late();
   Ticket join(const std::shared_ptr<Flight>& flight, Clock::time_point now, Asker asker) const;
   void give_up(const std::shared_ptr<Flight>& flight);
   void forget(const std::shared_ptr<Flight>& flight);
@@ -228,6 +246,7 @@ class TileService {
   const std::shared_ptr<FeatureClassCache> classes_;
   const std::size_t workers_;
   std::vector<std::thread> threads_;
+  std::thread placer_;
 
   std::mutex identifying_;  // guards the following, which only compute fingerprints
   std::vector<std::unique_ptr<TilePainter>> idle_identifiers_;
@@ -238,6 +257,9 @@ class TileService {
   std::deque<std::shared_ptr<Bands>> bands_;  // those with bands not yet taken
   Queue queue_;
   Queue dear_queue_;
+  std::condition_variable labels_wanted_;
+  Queue awaiting_labels_;  // of either cost
+  bool is_placing_ = false;
   std::size_t drawing_ = 0;       // tiles that workers have taken
   std::size_t dear_drawing_ = 0;  // the expensive ones among these
   std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // queued or being drawn

@@ -1,6 +1,7 @@
 #include "core/io/source/feature_source.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string_view>
 #include <unordered_map>
@@ -45,6 +46,33 @@ constexpr std::size_t kCostByPlace = 8;
 /// read.
 bool is_asked_when_read(std::string_view driver) {
   return driver == "GPKG" || driver == "SQLite" || driver == "PostgreSQL";
+}
+
+/// Past the quoted text, the name or the comment that begins there; `at` itself if nothing does.
+std::size_t end_of_quoted(std::string_view sql, std::size_t at) {
+  struct Quotes {
+    std::string_view begin;
+    std::string_view end;
+  };
+  static constexpr std::array<Quotes, 6> kQuotes = {
+      {{"'", "'"}, {"\"", "\""}, {"`", "`"}, {"[", "]"}, {"--", "\n"}, {"/*", "*/"}}};
+  for (const auto& [begin, end] : kQuotes) {
+    if (sql.substr(at, begin.size()) != begin) continue;
+    const std::size_t found = sql.find(end, at + begin.size());
+    return found == std::string_view::npos ? sql.size() : found + end.size();
+  }
+  return at;
+}
+
+/// A database would take what comes behind a semicolon for another statement: some pass over it
+/// without a word, others do what it says.
+bool has_several_statements(std::string_view where) {
+  for (std::size_t at = 0; at < where.size();) {
+    const std::size_t end = end_of_quoted(where, at);
+    if (end == at && where[at] == ';') return true;
+    at = std::max(end, at + 1);
+  }
+  return false;
 }
 
 }  // namespace
@@ -144,6 +172,9 @@ void FeatureSource::count_stored() {
 /// The reason why a layer cannot be queried; empty if all can.
 std::string FeatureSource::apply_condition(const std::string& where) {
   if (where.empty()) return {};
+  if (has_several_statements(where)) {
+    return "cannot be asked where " + where + ": there is a semicolon in it, outside of quotes";
+  }
   has_condition_ = true;
   for (const SourceLayer& layer : layers_) {
     const std::string failure = apply_condition(where, *layer.layer);

@@ -114,12 +114,36 @@ void check_contents(const std::string& path) {
   if (is_prepared_file(path)) fail(path, "is a prepared layer; name its source");
 }
 
+/// The name in GDAL of a source given by URL; empty if the path is no URL.
+std::string vsi_name_of(const std::string& path) {
+  struct Scheme {
+    std::string_view address;
+    std::string_view prefix;  // replaces the scheme, or precedes the URL if that is kept
+    bool is_kept;
+  };
+  static constexpr std::array<Scheme, 6> kSchemes = {{{"http://", "/vsicurl/", true},
+                                                      {"https://", "/vsicurl/", true},
+                                                      {"ftp://", "/vsicurl/", true},
+                                                      {"s3://", "/vsis3/", false},
+                                                      {"gs://", "/vsigs/", false},
+                                                      {"az://", "/vsiaz/", false}}};
+  for (const auto& [address, prefix, is_kept] : kSchemes) {
+    if (!path.starts_with(address)) continue;
+    return std::string(prefix) + path.substr(is_kept ? 0 : address.size());
+  }
+  return {};
+}
+
 // Distinguishes a name that does not exist from one that exists but cannot be accessed, such as a
 // loop of links, or from which no data may ever arrive.
 void check_exists(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::symlink_status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) fail(path, "no such file");
+  if (status.type() == std::filesystem::file_type::not_found) {
+    const std::string name = vsi_name_of(path);
+    if (name.empty()) fail(path, "no such file");
+    fail(path, "is an address and no file; " + name_of_source(name) + " reads what is there");
+  }
   if (error) fail(path, "cannot be read: " + error.message());
   if (std::filesystem::is_fifo(path, error)) fail(path, "is a pipe; name a file");
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <random>
@@ -20,6 +21,7 @@
 #include "server/changes/changed_tiles.h"
 #include "server/config/load_config.h"
 #include "server/data/dataset.h"
+#include "server/data/layer_damage.h"
 #include "server/data/layer_summary.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_plan.h"
@@ -310,6 +312,27 @@ TEST_F(LayerInThreeParts, LooksAtTheOverviewAloneFromAfar) {
   for (const auto& part : parts.parts()) EXPECT_EQ(part->layer_if_open(), nullptr);
   EXPECT_EQ(site.get("/tiles/places/0/0/0.png?filter=number%20%3C%209").status, 200);
   for (const auto& part : parts.parts()) EXPECT_NE(part->layer_if_open(), nullptr);
+}
+
+TEST_F(LayerInThreeParts, SaysFromTheFirstTileOnThatAPartIsDamaged) {
+  const PreparedParts& parts = *parts_->layers()[0].parts;
+  const std::string& path = parts.parts()[1]->path();
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(path) / 2));
+    file << "damage";
+  }
+  testing::SampleSite site(false);
+  site.data().set(parts_);
+  EXPECT_EQ(damage_of(parts_->layers()[0]), "") << "nobody has looked";
+  for (int i = 0; i < 2; ++i) {
+    const HttpResponse answer = site.get("/tiles/places/0/0/0.png?filter=number%20%3C%209");
+    EXPECT_EQ(answer.status, 503);
+    EXPECT_THAT(*answer.body, ::testing::HasSubstr("prepared again"));
+  }
+  EXPECT_THAT(damage_of(parts_->layers()[0]),
+              ::testing::AllOf(::testing::StartsWith(path), ::testing::HasSubstr("is damaged")));
 }
 
 TEST_F(LayerInThreeParts, DrawsPolygonsOfTheOverviewAsThoseOfTheWhole) {

@@ -79,6 +79,20 @@ TEST(HttpLimitsTest, TargetAndHeaderAreAsLongAsConfigured) {
   EXPECT_EQ(status_of(kTile, 1000), 431);
 }
 
+TEST(HttpLimitsTest, ManyShortFieldsAreAsLongAsOneLongField) {
+  HttpServerOptions options;
+  options.header_limit = 1000;
+  RunningServer server(options);
+  const auto status_with = [&server](int fields) {
+    std::string header;
+    for (int i = 0; i < fields; ++i) header += "X: y\r\n";
+    return RawClient(server.port()).get("/health", header).status;
+  };
+  EXPECT_EQ(status_with(150), 200);
+  EXPECT_EQ(status_with(200), 431);
+  EXPECT_EQ(status_with(9000), 431);
+}
+
 TEST(HttpLimitsTest, LayersScaleAndZoomAreAsConfigured) {
   SiteOptions site;
   site.max_layers = 1;
@@ -141,6 +155,25 @@ TEST(HttpLimitsTest, BehindATrustedProxyItIsTheClientThatIsLimited) {
   EXPECT_EQ(status_for("127.0.0.2", "203.0.113.4", 3), 429) << "who is not trusted cannot lie";
 }
 
+TEST(HttpLimitsTest, WhatIsSentBehindABodyIsNoHeader) {
+  SiteOptions site;
+  site.drawn_per_second = 0.001;
+  site.drawn_burst = 1;
+  HttpServerOptions options;
+  options.trusted_proxies = {parse_address_range("127.0.0.1").value()};
+  RunningServer server(options, site);
+  const auto status_for = [&server](const std::string& trailer, int x) {
+    RawClient client(server.port());
+    client.send("GET /tiles/rings/3/" + std::to_string(x) +
+                "/1.png HTTP/1.1\r\nHost: a\r\nX-Forwarded-For: 203.0.113.1\r\n"
+                "Transfer-Encoding: chunked\r\n\r\n0\r\n" +
+                trailer + "\r\n");
+    return client.receive().status;
+  };
+  EXPECT_EQ(status_for("Host: b\r\n", 0), 200) << "there is one Host header";
+  EXPECT_EQ(status_for("X-Forwarded-For: 203.0.113.2\r\n", 1), 429);
+}
+
 TEST(HttpLimitsTest, AConnectionMayRestLongerThanARequestMayTake) {
   HttpServerOptions options;
   options.idle_timeout = 10s;
@@ -187,6 +220,30 @@ TEST(HttpLimitsTest, ABodyThatNobodyAskedForIsNotTheNextRequest) {
   const std::string smuggled = "GET /nosuch HTTP/1.1\r\nHost: smuggled\r\n\r\n";
   client.send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: " + std::to_string(smuggled.size()) +
               "\r\n\r\n" + smuggled + "GET /health HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(client.receive().status, 405);
+  EXPECT_EQ(client.receive().status, 200);
+}
+
+TEST(HttpLimitsTest, ABodyOfWhichNobodyKnowsTheEndIsNotTheNextRequest) {
+  RunningServer server;
+  const auto statuses_for = [&server](const std::string& version, const std::string& coding) {
+    RawClient client(server.port());
+    client.send("POST /styles HTTP/" + version + "\r\nHost: a\r\nConnection: keep-alive\r\n" +
+                "Transfer-Encoding: " + coding +
+                "\r\n\r\nGET /health HTTP/1.1\r\nHost: smuggled\r\n\r\n");
+    const std::string all = client.receive_all();
+    EXPECT_EQ(all.find("Server: "), all.rfind("Server: ")) << coding << ": " << all;
+    return all.substr(9, 3);
+  };
+  for (const char* coding : {"xchunked", "identity", "chunked, identity", "\"chunked\"", "gzip",
+                             "chunked;q=1", "gzip, chunked", "identity, chunked"}) {
+    EXPECT_EQ(statuses_for("1.1", coding), "501") << coding;
+  }
+  EXPECT_EQ(statuses_for("1.0", "chunked"), "400");
+  RawClient client(server.port());
+  client.send(
+      "POST /health HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: Chunked\r\n\r\n0\r\n\r\n"
+      "GET /health HTTP/1.1\r\nHost: a\r\n\r\n");
   EXPECT_EQ(client.receive().status, 405);
   EXPECT_EQ(client.receive().status, 200);
 }

@@ -1,9 +1,12 @@
 // Labels in tiles: whole across borders, the same at all scales, and in all that is served.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <memory>
 #include <random>
 #include <set>
@@ -13,8 +16,12 @@
 
 #include "render/picture/png.h"
 #include "render/software/software_renderer.h"
+#include "server/config/load_config.h"
 #include "server/labels/draw_labels.h"
+#include "server/tiles/open_fonts.h"
 #include "server/tiles/tile_painter.h"
+#include "server/tiles/tile_service.h"
+#include "tests/core/io/temporary_folder.h"
 #include "tests/server/labels/seen_labels.h"
 #include "tests/server/seed/seeded_tiles.h"
 #include "tests/server/service/sample_site.h"
@@ -235,6 +242,58 @@ TEST_F(LabelledTilesTest, SeedingKnowsOfLabels) {
     ASSERT_TRUE(plan);
     testing::expect_served_bytes(*plan);
   }
+}
+
+/// So many squares, each with a number, that it takes a second and more to place their labels.
+std::shared_ptr<const Dataset> many_squares() {
+  constexpr int kColumns = 300;
+  constexpr int kRows = 100;
+  std::string features;
+  for (int i = 0; i < kColumns * kRows; ++i) {
+    const double x = 0.1 * (i % kColumns);
+    const double y = 0.1 * (i / kColumns);
+    features += fmt::format(
+        R"({}{{"type":"Feature","properties":{{"n":{}}},"geometry":{{"type":"Polygon",)"
+        R"("coordinates":[[[{:.2f},{:.2f}],[{:.2f},{:.2f}],[{:.2f},{:.2f}],[{:.2f},{:.2f}]]]}}}})",
+        i == 0 ? "" : ",", i, x, y, x + 0.09, y, x + 0.09, y + 0.09, x, y);
+  }
+  const TemporaryFolder folder;
+  const std::string file = folder.write(
+      "squares.geojson", R"({"type":"FeatureCollection","features":[)" + features + "]}");
+  return Dataset::load(layers_of_files({file}));
+}
+
+TEST(LabelPlacingTest, KeepsNobodyLongerThanTheDeadlineAndNoWorkerAtAll) {
+  const auto dataset = many_squares();
+  const auto book = std::make_shared<LabelBook>(FontChoice{open_fonts({})});
+  std::vector<std::unique_ptr<MaskRenderer>> renderers;
+  renderers.push_back(std::make_unique<SoftwareRenderer>());
+  TileServiceOptions options;
+  options.deadline = std::chrono::milliseconds(100);
+  options.labels = book;
+  TileService service(options, std::move(renderers));
+  const auto submit = [&](const TilePlan& plan, TileService::Cost cost) {
+    auto promise = std::make_shared<std::promise<TileAnswer>>();
+    service.submit({plan, plan.key(), cost},
+                   [promise](const TileAnswer& answer) { promise->set_value(answer); });
+    return promise->get_future();
+  };
+  const TilePlan labelled = *plan_tile(request_of("squares/12/2080/2030.png?label=n"), dataset);
+  const TilePlan plain = *plan_tile(request_of("squares/12/2080/2030.png"), dataset);
+  auto first = submit(labelled, TileService::Cost::dear);
+  const auto draw_plain = [&] {
+    return submit(plain, TileService::Cost::cheap).get().outcome == TileOutcome::drawn;
+  };
+  for (int i = 0; i < 20 && !draw_plain(); ++i) continue;
+  EXPECT_TRUE(draw_plain());
+  EXPECT_FALSE(book->has_placed({*dataset, labelled.labels, labelled.view, labelled.scale}))
+      << "the only worker draws what has no labels meanwhile";
+  EXPECT_EQ(first.get().outcome, TileOutcome::placing);
+  TileAnswer answer;
+  for (int i = 0; i < 1'000 && !answer.is_known(); ++i) {
+    answer = submit(labelled, TileService::Cost::dear).get();
+  }
+  EXPECT_EQ(answer.outcome, TileOutcome::drawn) << "placing goes on when nobody waits for it";
 }
 
 TEST(LabelRequestsTest, WrongOnesAreTold) {

@@ -53,8 +53,18 @@ TEST_F(OpenSourceTest, SaysThatAFileIsMissing) {
   const std::string path = folder_.file("missing.fgb");
   EXPECT_EQ(refusal(path), path + ": no such file");
   EXPECT_THAT(refusal("/vsizip/" + path), HasSubstr("no such file"));
-  EXPECT_THAT(refusal("http://localhost:9/a.geojson"), HasSubstr("no such file"));
   EXPECT_THAT(refusal(""), HasSubstr("no such file"));
+}
+
+TEST_F(OpenSourceTest, SaysHowWhatIsUnderAnAddressIsNamed) {
+  EXPECT_EQ(refusal("http://localhost:9/a.geojson"),
+            "http://localhost:9/a.geojson: is an address and no file; "
+            "/vsicurl/http://localhost:9/a.geojson reads what is there");
+  EXPECT_THAT(
+      refusal("https://me:secret@localhost/a.fgb"),
+      AllOf(HasSubstr("/vsicurl/https://me:***@localhost/a.fgb"), Not(HasSubstr("secret"))));
+  EXPECT_THAT(refusal("s3://maps/a.fgb"), HasSubstr("; /vsis3/maps/a.fgb reads"));
+  EXPECT_THAT(refusal("gs://maps/a.fgb"), HasSubstr("; /vsigs/maps/a.fgb reads"));
 }
 
 TEST_F(OpenSourceTest, SaysThatAFileIsAFolder) {

@@ -180,6 +180,25 @@ TEST_F(SourceSelectionTest, SaysInOneLineWhichConditionALayerDoesNotUnderstand) 
   }
 }
 
+TEST_F(SourceSelectionTest, AConditionIsOneCondition) {
+  for (const std::string& path : {town_, kMixed}) {
+    for (const std::string where :
+         {"number = 1; DROP TABLE houses", "number = 1;", ";", "text = ''';' OR 1 = 1; x",
+          "number = 1 /* ; */ ; SELECT 1", "number = 1 -- ;\n; SELECT 1"}) {
+      EXPECT_THAT(failure_of(path, {.where = where}),
+                  AllOf(StartsWith(path), HasSubstr("cannot be asked where " + where),
+                        HasSubstr("a semicolon")));
+    }
+  }
+  for (const std::string where :
+       {"text <> 'a;b'", "text <> 'it''s;'", "\"text\" <> ';' AND \"number\" > 0",
+        "number > 0 /* one; two */", "number > 0 -- one; two", "[number] > 0 AND `text` <> ';'"}) {
+    const SourceSelection selection = {.layer = "houses", .where = where};
+    EXPECT_THAT(numbers(*load_layer(town_, {.selection = selection}).layer), ElementsAre(1, 2, 3))
+        << where;
+  }
+}
+
 TEST_F(SourceSelectionTest, AConditionThatHoldsForNothingIsUnderstood) {
   EXPECT_EQ(load_layer(town_, {.selection = {.where = "number > 100"}}).report.loaded, 0u);
 }
