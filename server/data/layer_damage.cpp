@@ -6,8 +6,7 @@ namespace trapeze {
 namespace {
 
 std::string damage_by_writing(const std::string& file) {
-  return file +
-         ": has been cut off or written into while it was served; run `trapeze prepare` again";
+  return file + ": was truncated or modified while it was served; run `trapeze prepare` again";
 }
 
 std::string damage_of_part(const PreparedPart& part) {

@@ -9,7 +9,7 @@ namespace trapeze {
 namespace {
 
 Problem too_many() {
-  return {503, "More documents are wanted than can be made. Ask again."};
+  return {503, "The server has more documents to create than it can handle. Try again."};
 }
 
 }  // namespace

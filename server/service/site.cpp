@@ -74,10 +74,9 @@ Problem too_large_style(std::size_t length, const SiteOptions& options) {
 }
 
 Problem too_dear(std::uint64_t most) {
-  return {400,
-          fmt::format("This picture takes more drawing than the {} units that one may take here. "
-                      "Ask for a coarser simplify, a smaller scale, fewer layers or no outlines.",
-                      most)};
+  return {400, fmt::format("This picture would take more than {} units of drawing, the limit here. "
+                           "Use a coarser simplify, a smaller scale, fewer layers or no outlines.",
+                           most)};
 }
 
 Problem still_loading() {
@@ -260,18 +259,18 @@ HttpResponse in_words_of_wms(HttpResponse response, std::string_view target, con
 HttpResponse undrawn_response(TileOutcome outcome) {
   switch (outcome) {
     case TileOutcome::saturated:
-      return problem_response({503, "There is more to draw than can be drawn. Ask again."});
+      return problem_response(
+          {503, "The server has more tiles to draw than it can handle. Try again."});
     case TileOutcome::withdrawn:
       return problem_response({kClientGone, "The client has gone."});
     case TileOutcome::late:
       return problem_response({504, "The tile was not drawn in time."});
     case TileOutcome::placing:
-      return problem_response({503, "The labels of this map are being placed. Ask again."});
+      return problem_response({503, "The labels of this map are being placed. Try again."});
     case TileOutcome::damaged:
       return problem_response(
           {503,
-           "A file of what is asked for has been cut off or written into. It has "
-           "to be prepared again."});
+           "A file of a requested layer was truncated or modified. It has to be prepared again."});
     default:
       return problem_response({500, "The tile could not be drawn."});
   }
@@ -501,8 +500,7 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
     const auto pause =
         post_limit_->take(limited_address(request.client), RateLimit::Clock::now(), memory);
     if (pause) {
-      return problem_response({429, "These are more styles than one address may post. Ask again."},
-                              *pause);
+      return problem_response({429, "One address cannot post so many styles. Try again."}, *pause);
     }
   }
   const auto id = styles_->post(*std::move(style));
@@ -545,8 +543,8 @@ void Site::handle_posted_values(const Target& target, const HttpRequest& request
   const auto bytes = static_cast<double>(request.body.size());
   const auto address = limited_address(request.client);
   if (const auto pause = values_limit_->take(address, RateLimit::Clock::now(), bytes)) {
-    return respond(problem_response(
-        {429, "These are more tables than one address may post. Ask again."}, *pause));
+    return respond(
+        problem_response({429, "One address cannot post so many tables. Try again."}, *pause));
   }
   const ReadValuesOptions options{query->columns, options_.values_rows};
   auto id = std::make_shared<std::string>();
@@ -669,12 +667,12 @@ std::optional<HttpResponse> Site::find_impatience(const HttpRequest& request,
   const auto now = RateLimit::Clock::now();
   if (const auto pause = draw_limit_->take(address, now)) {
     return problem_response(
-        {429, "These are more tiles at once than one address may have drawn. Ask again."}, *pause);
+        {429, "One address cannot request so many new tiles at once. Try again."}, *pause);
   }
   if (cost <= defaults::kOrdinaryTile) return std::nullopt;
   if (const auto pause = cost_limit_->take(address, now, static_cast<double>(cost))) {
-    return problem_response(
-        {429, "These tiles take more drawing than one address may ask for. Ask again."}, *pause);
+    return problem_response({429, "One address cannot request so many expensive tiles. Try again."},
+                            *pause);
   }
   return std::nullopt;
 }
@@ -702,7 +700,7 @@ std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
                       static_cast<std::uint64_t>(matrix.tile_height) *
                       static_cast<std::uint64_t>(tile.scale * tile.scale);
   if (tile.set != web_mercator_quad() && pixels > options_.map_pixels) {
-    return Problem{400, fmt::format("A picture has at most {} pixels here.", options_.map_pixels),
+    return Problem{400, fmt::format("A picture can have at most {} pixels.", options_.map_pixels),
                    "scale", fmt::format("{}x", tile.scale), "a smaller scale"};
   }
   return find_excess(tile.layers);
@@ -719,7 +717,7 @@ std::optional<Problem> Site::find_excess(const WindowRequest& window) const {
   const View& view = window.view;
   const std::string size = fmt::format("{} x {}", view.width, view.height);
   if (pixels_of(view) > options_.map_pixels) {
-    return Problem{400, fmt::format("A picture has at most {} pixels here.", options_.map_pixels),
+    return Problem{400, fmt::format("A picture can have at most {} pixels.", options_.map_pixels),
                    "width", size,
                    fmt::format("width times height of at most {}", options_.map_pixels)};
   }
@@ -846,7 +844,7 @@ Result<std::string> Site::base_url(const HttpRequest& request) const {
                    "Host", request.host, "a host name or address, with or without a port"};
   }
   if (!options_.allowed_hosts.empty() && !is_allowed_host(request.host, options_.allowed_hosts)) {
-    return Problem{400, "This server is not known by that name.", "Host", request.host,
+    return Problem{400, "This server does not answer for this host name.", "Host", request.host,
                    "one of the names that its configuration allows"};
   }
   return "http://" + request.host;

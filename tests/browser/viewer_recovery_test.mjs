@@ -222,7 +222,7 @@ test("tiles refused for a while (429) are told and come later, not sooner than w
   await page.context().close();
 });
 
-const TOO_DEAR = { detail: "This tile takes more drawing than the 5 units that one may take here." };
+const TOO_DEAR = { detail: "This picture would take more than 5 units of drawing, the limit here." };
 
 test("tiles too dear for all layers at once are drawn layer by layer", async () => {
   const { page } = await new_page(browser);

@@ -65,7 +65,7 @@ TEST_F(DocumentWorkerTest, TurnsAwayWhatWouldWaitTooLong) {
   for (std::size_t i = 0; i < DocumentWorker::kMostWaiting; ++i) {
     answers.push_back(order(std::to_string(i), ""));
   }
-  EXPECT_THAT(text_of(order("one more", "")), ::testing::HasSubstr("More documents"));
+  EXPECT_THAT(text_of(order("one more", "")), ::testing::HasSubstr("more documents"));
   opener_.set_value();
   for (auto& answer : answers) EXPECT_TRUE(answer.get());
 }
@@ -87,7 +87,7 @@ TEST_F(DocumentWorkerTest, EndingAnswersWhatWaits) {
   ending.join();
   EXPECT_EQ(text_of(std::move(first)), "one");
   EXPECT_THAT(text_of(std::move(waiting)),
-              ::testing::AnyOf("two", ::testing::HasSubstr("More documents")));
+              ::testing::AnyOf("two", ::testing::HasSubstr("more documents")));
 }
 
 }  // namespace
