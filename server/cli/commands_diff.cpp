@@ -33,7 +33,7 @@ ChangeRequest make_request(const DiffArguments& arguments) {
   if (!zooms) {
     throw UsageError(
         fmt::format("--zooms takes a zoom or a range of them such as 0-12, from 0 to "
-                    "{}, given was \"{}\"",
+                    "{}, got \"{}\"",
                     kMaxZoom, arguments.zooms));
   }
   request.zooms = *zooms;

@@ -44,7 +44,7 @@ struct PartRange {
 PartRange parts_or_throw(const std::string& text) {
   const auto wrong = [&text] {
     return UsageError(fmt::format(
-        "--part takes I/N, I being from 1 to N, or A-B/N for several, given was \"{}\"", text));
+        "--part takes I/N, I being from 1 to N, or A-B/N for several, got \"{}\"", text));
   };
   const std::size_t slash = text.find('/');
   const std::size_t dash = text.find('-');
@@ -54,8 +54,7 @@ PartRange parts_or_throw(const std::string& text) {
   const auto last = is_range ? parse_part(text.substr(dash + 1)) : first;
   if (!first || !last || first->number > last->number) throw wrong();
   if (first->count > kMostParts) {
-    throw UsageError(
-        fmt::format("--part takes {} parts at most, given was \"{}\"", kMostParts, text));
+    throw UsageError(fmt::format("--part takes {} parts at most, got \"{}\"", kMostParts, text));
   }
   return {static_cast<std::uint32_t>(first->number), static_cast<std::uint32_t>(last->number),
           static_cast<std::uint32_t>(first->count)};

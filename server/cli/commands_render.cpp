@@ -36,7 +36,7 @@ TileId tile_or_throw(const std::string& text) {
   if (tile) return *tile;
   throw UsageError(
       fmt::format("--tile takes Z/X/Y, a zoom from 0 to {} and a column and a row from "
-                  "0 to 2^Z - 1, given was \"{}\"",
+                  "0 to 2^Z - 1, got \"{}\"",
                   kMaxZoom, text));
 }
 
@@ -45,9 +45,8 @@ TileFormat format_of(const std::string& path) {
   const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
   if (extension == ".png") return TileFormat::png;
   if (extension != ".webp") {
-    throw UsageError(
-        fmt::format("--output takes a name that ends in .png or .webp, given was \"{}\"{}", path,
-                    did_you_mean(extension, {".png", ".webp"})));
+    throw UsageError(fmt::format("--output takes a name that ends in .png or .webp, got \"{}\"{}",
+                                 path, did_you_mean(extension, {".png", ".webp"})));
   }
   if (!has_webp()) throw UsageError("--output: this program was built without WebP; use .png");
   return TileFormat::webp;

@@ -121,9 +121,9 @@ ZoomRange zooms_or_throw(const std::string& given, int last) {
   if (given.empty()) throw UsageError("--zooms is missing");
   const auto zooms = parse_zooms(given);
   if (zooms && zooms->last <= last) return *zooms;
-  throw UsageError(fmt::format(
-      "--zooms takes a zoom or a range of them such as 0-12, from 0 to {}, given was \"{}\"", last,
-      given));
+  throw UsageError(
+      fmt::format("--zooms takes a zoom or a range of them such as 0-12, from 0 to {}, got \"{}\"",
+                  last, given));
 }
 
 SeedRequest make_request(const SeedArguments& arguments, const Config& config) {
@@ -138,7 +138,7 @@ SeedRequest make_request(const SeedArguments& arguments, const Config& config) {
     if (!request.bbox) {
       throw UsageError(
           fmt::format("--bbox takes W,S,E,N in degrees, W being less than E and S "
-                      "less than N, given was \"{}\"",
+                      "less than N, got \"{}\"",
                       arguments.bbox));
     }
   }
@@ -175,7 +175,7 @@ SeedPart part_of(const SeedArguments& arguments) {
   const auto part = parse_part(arguments.part);
   if (!part) {
     throw UsageError(
-        fmt::format("--part takes I/N, I being from 1 to N, given was \"{}\"", arguments.part));
+        fmt::format("--part takes I/N, I being from 1 to N, got \"{}\"", arguments.part));
   }
   if (kind_of_archive(arguments.output) != ArchiveKind::folder) {
     throw UsageError(

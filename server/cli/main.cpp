@@ -189,7 +189,7 @@ trapeze::ConfigOverride parse_assignment(const std::string& text) {
   for (const auto& setting : trapeze::config_settings()) known.push_back(setting.name());
   const bool is_known = std::ranges::find(known, name) != known.end();
   if (equals == std::string::npos || !is_known) {
-    throw trapeze::UsageError("--set takes TABLE.KEY=VALUE of a setting, given was \"" + text +
+    throw trapeze::UsageError("--set takes TABLE.KEY=VALUE of a setting, got \"" + text +
                               "\"; `trapeze config print` shows all settings" +
                               (is_known ? "" : trapeze::did_you_mean(name, known)));
   }

@@ -44,14 +44,14 @@ std::string without_grid(const std::string& file) {
 
 [[noreturn]] void throw_wrong_number(const std::string& option, const std::string& takes,
                                      const std::string& given) {
-  throw UsageError(fmt::format("{} takes {}, given was \"{}\"", option, takes, given));
+  throw UsageError(fmt::format("{} takes {}, got \"{}\"", option, takes, given));
 }
 
 }  // namespace
 
 void throw_wrong_word(const std::string& option, const std::string& given,
                       std::span<const std::string_view> words) {
-  throw UsageError(fmt::format("{} takes {}, given was \"{}\"{}", option, listed(words), given,
+  throw UsageError(fmt::format("{} takes {}, got \"{}\"{}", option, listed(words), given,
                                did_you_mean(given, {words.begin(), words.end()})));
 }
 
@@ -87,14 +87,14 @@ void check_polygon_ending(const std::string& option, const std::string& output) 
   if (std::ranges::find(endings, ending) != endings.end()) return;
   throw UsageError(
       fmt::format("{} takes a name that ends in .fgb (FlatGeobuf), .gpkg (GeoPackage) or .geojson "
-                  "(GeoJSON), given was \"{}\"{}",
+                  "(GeoJSON), got \"{}\"{}",
                   option, output, did_you_mean(ending, endings)));
 }
 
 SkipLimit skip_limit_or_throw(const std::string& option, const std::string& text) {
   const auto limit = SkipLimit::parse(text);
   if (!limit) {
-    throw UsageError(fmt::format("{} takes {}, given was \"{}\"", option, SkipLimit::kTakes, text));
+    throw UsageError(fmt::format("{} takes {}, got \"{}\"", option, SkipLimit::kTakes, text));
   }
   return *limit;
 }

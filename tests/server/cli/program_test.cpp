@@ -359,8 +359,9 @@ TEST(ProgramTest, AFontThatCannotBeUsedIsAWarningOfConfigCheckAndDoesNotKeepFrom
   serve.port();
   serve.send_signal(SIGTERM);
   EXPECT_EQ(serve.wait(), 0);
-  EXPECT_THAT(serve.output(), AllOf(HasSubstr("/nowhere/a.ttf is not there"),
-                                    HasSubstr("there is no font, so legends and labels show no text")));
+  EXPECT_THAT(serve.output(),
+              AllOf(HasSubstr("/nowhere/a.ttf is not there"),
+                    HasSubstr("there is no font, so legends and labels show no text")));
   std::filesystem::remove(path);
   std::filesystem::remove(font);
 }
@@ -623,7 +624,7 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"config"}, "config needs a command: check, print, schema"},
       {{"config", "check"}, "FILE"},
       {{"render", fixture("rings.geojson"), "--tile", "0/1/0", "--output", "x.png"},
-       "0 to 2^Z - 1, given was \"0/1/0\""},
+       "0 to 2^Z - 1, got \"0/1/0\""},
       {{"render", fixture("rings.geojson"), "--tile", "0", "--output", "x.png"}, "Z/X/Y"},
       {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--style", "fill=no", "--output",
         "x.png"},
@@ -684,7 +685,7 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"config", "check", "a.toml", "b.toml"}, "config check takes no further argument b.toml"},
       {{"check", fixture("rings.geojson"), "--close-gaps"}, "--close-gaps needs a value, METRES;"},
       {{"check", fixture("rings.geojson"), "--close-gaps", "x"},
-       "--close-gaps takes a number from 0 to 1000, given was \"x\""},
+       "--close-gaps takes a number from 0 to 1000, got \"x\""},
       {{"check", fixture("rings.geojson"), "--coverage", "off", "--close-gaps", "5"},
        "--close-gaps needs --coverage auto or on"},
       {{"check", fixture("rings.geojson"), "--coverage", "off", "--merge", "4"},
@@ -692,19 +693,19 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"check", fixture("rings.geojson"), "--merge-by", "name"}, "--merge-by needs --merge"},
       {{"check", fixture("rings.geojson"), "--coverage", "of"}, "did you mean o"},
       {{"check", fixture("rings.geojson"), "--max-skipped", "101%"},
-       "--max-skipped takes a number of features, or a share of them such as \"1%\", given was"},
+       "--max-skipped takes a number of features, or a share of them such as \"1%\", got"},
       {{"prepare", fixture("rings.geojson")}, "--output is missing"},
       {{"prepare", fixture("rings.geojson"), fixture("rings.geojson"), "--output", "x"},
        "both be the layer"},
       {{"prepare", fixture("rings.geojson"), "--output", fixture("rings.geojson")},
        "--output takes a folder"},
       {{"export", fixture("rings.geojson"), "--zoom", "x", "--output", "x.fgb"},
-       "--zoom takes a whole number from 0 to 24, given was \"x\""},
+       "--zoom takes a whole number from 0 to 24, got \"x\""},
       {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.png"}, ".geojson"},
       {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.gpgk"},
        "did you mean .gpkg?"},
       {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--scale", "9", "--output", "x.png"},
-       "--scale takes a whole number from 1 to 4, given was \"9\""},
+       "--scale takes a whole number from 1 to 4, got \"9\""},
       {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "x.pgn"},
        "did you mean .png?"},
       {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "x.png", "--style",
@@ -962,11 +963,10 @@ TEST(ProgramTest, HelpTellsTheDefaultsOfSettings) {
   EXPECT_EQ(program.wait(), 0);
   const ServerConfig defaults;
   const std::string port = std::to_string(defaults.port);
-  EXPECT_THAT(
-      program.output(),
-      AllOf(::testing::ContainsRegex("--port N +The port.*Default: " + port),
-            ::testing::ContainsRegex("--address IP +The.*Default: " + defaults.address),
-            ::testing::ContainsRegex("--renderer NAME .*\"software\"[.] Default: auto")));
+  EXPECT_THAT(program.output(),
+              AllOf(::testing::ContainsRegex("--port N +The port.*Default: " + port),
+                    ::testing::ContainsRegex("--address IP +The.*Default: " + defaults.address),
+                    ::testing::ContainsRegex("--renderer NAME .*\"software\"[.] Default: auto")));
 }
 
 }  // namespace
