@@ -4,11 +4,15 @@
 // Of each pixel that lines pass through, their outermost points in eight directions are kept. So a
 // cell with one line in it has the ends of the piece within the cell, and the distance from it is
 // exact; from a cell with many lines it is right within a tenth of a pixel, at two pixels and
-// further away. The nearest cell spreads from pixel to pixel, row by row, down and up again.
+// further away. The nearest cell spreads from pixel to pixel, as far as it is the nearest.
+//
+// Lines may be added in rounds, those that matter most first: each round finds the pixels to which
+// its lines are nearer than all before, and looks at no others.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,19 +35,20 @@ class OutlineField {
   void begin(int width, int height, double reach);
 
   /// Adds a line. share_at(part), for a part of its length from 0 to 1, is how much of the line is
-  /// there, from 0 to 1: where lines share a pixel, the greatest share counts.
+  /// there, from 0 to 1: where lines of a round share a pixel, the greatest share counts.
   template <typename ShareAt>
   void add(PicturePlace from, PicturePlace to, const ShareAt& share_at);
 
-  /// Finds the nearest lines, when all have been added. Throws Cancelled.
-  void spread(const Cancellation* cancellation);
-
-  /// Of a pixel of the picture, after spread().
+  /// Of a pixel of the picture.
   struct Nearest {
-    float distance;  // of its centre, in pixels; beyond the reach if there is no line within it
+    float distance;  // of its centre from the line, in pixels
     float share;     // of the line there
   };
-  Nearest nearest(int column, int row) const;
+  /// Ends a round: finds the pixels to which lines that were added since the last round are nearer
+  /// than all that were added before. on_nearer(column, row, nearest) is told of each that lies in
+  /// the picture and within the reach. Throws Cancelled.
+  template <typename OnNearer>
+  void spread(const Cancellation* cancellation, const OnNearer& on_nearer);
 
   /// Cells that lines passed through, each time, and cells that were looked at in search of the
   /// nearest one: the work that was done since begin().
@@ -55,6 +60,9 @@ class OutlineField {
   static constexpr std::uint32_t kNone = 0xffffffff;
   static constexpr int kDirections = 8;
   static constexpr double kParts = 255;  // of a pixel, in which points are kept
+  static constexpr float kSharesOfOne = 255;
+  static constexpr std::uint8_t kIsWaiting = 1;
+  static constexpr std::uint8_t kIsNearer = 2;
 
   struct CellPoint {
     std::uint8_t x;
@@ -66,7 +74,7 @@ class OutlineField {
     std::uint16_t column;
     std::uint16_t row;
     std::array<CellPoint, kDirections> outermost;
-    std::uint8_t share;
+    std::uint8_t share;  // of what the round added that the cell is of
   };
   // Of a line, as far as it crosses the grid: parts of its length.
   struct Crossing {
@@ -77,9 +85,12 @@ class OutlineField {
   Crossing crossing(PicturePlace from, PicturePlace to) const;
   void add_piece(int column, int row, PicturePlace from, PicturePlace to, float share);
   static void include(Cell& cell, CellPoint point);
+  static float least_squared_distance(const Cell& cell, int column, int row);
   static float squared_distance(const Cell& cell, int column, int row);
-  void pull(std::size_t place, int column, int row, std::size_t from);
-  void spread_row(int row, int previous_row);
+  float share_of(std::uint32_t number) const {
+    return static_cast<float>(cells_[number].share) / kSharesOfOne;
+  }
+  void pull(std::uint32_t number, int column, int row);
   std::size_t place_of(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);
@@ -90,9 +101,20 @@ class OutlineField {
   int columns_ = 0;
   int rows_ = 0;
   float most_squared_ = 0;              // distance that is of interest
-  std::vector<Cell> cells_;             // that lines pass through
+  std::vector<Cell> cells_;             // that lines pass through; in a later round, another one
+  std::size_t first_of_round_ = 0;      // of cells_
+  std::vector<std::uint32_t> cell_of_;  // by pixel: the last one in it
   std::vector<std::uint32_t> nearest_;  // cell, by pixel
   std::vector<float> squared_;          // distance from it, by pixel
+  struct Pixel {
+    std::uint16_t column;
+    std::uint16_t row;
+  };
+  // In this round: those whose neighbours have to be looked at, and all that became nearer.
+  std::vector<Pixel> waiting_;
+  std::vector<Pixel> next_waiting_;
+  std::vector<Pixel> nearer_;
+  std::vector<std::uint8_t> states_;  // by pixel: in which of the two it is
   std::uint64_t steps_ = 0;
 };
 
@@ -129,6 +151,42 @@ void OutlineField::add(PicturePlace from, PicturePlace to, const ShareAt& share_
     part = next;
     here = there;
   }
+}
+
+template <typename OnNearer>
+void OutlineField::spread(const Cancellation* cancellation, const OnNearer& on_nearer) {
+  CancellationCheck check(cancellation, 4096);
+  const auto try_around = [&](std::uint32_t number, int column, int row) {
+    const int end_column = std::min(column + 2, columns_);
+    const int end_row = std::min(row + 2, rows_);
+    for (int y = std::max(row - 1, 0); y < end_row; ++y) {
+      for (int x = std::max(column - 1, 0); x < end_column; ++x) pull(number, x, y);
+    }
+  };
+  // A cell may be nearer to a neighbour only, where an earlier round had a line in it.
+  for (std::size_t i = first_of_round_; i < cells_.size(); ++i) {
+    try_around(static_cast<std::uint32_t>(i), cells_[i].column, cells_[i].row);
+  }
+  first_of_round_ = cells_.size();
+  while (!waiting_.empty()) {
+    next_waiting_.clear();
+    next_waiting_.swap(waiting_);
+    for (const auto [pixel_column, pixel_row] : next_waiting_) {
+      check();
+      const std::size_t place = place_of(pixel_column, pixel_row);
+      states_[place] = kIsNearer;
+      try_around(nearest_[place], pixel_column, pixel_row);
+    }
+  }
+  for (const auto [column, row] : nearer_) {
+    const std::size_t place = place_of(column, row);
+    states_[place] = 0;
+    const int x = column - margin_;
+    const int y = row - margin_;
+    if (x < 0 || x >= columns_ - 2 * margin_ || y < 0 || y >= rows_ - 2 * margin_) continue;
+    on_nearer(x, y, Nearest{std::sqrt(squared_[place]), share_of(nearest_[place])});
+  }
+  nearer_.clear();
 }
 
 }  // namespace trapeze

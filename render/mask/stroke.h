@@ -13,8 +13,9 @@
 // width of its lines: where lines are so crowded that kCrowd values would be computed for every
 // pixel, their ends are moved to a grid of 1/32 pixel, which leaves out the shortest edges, and
 // equal ones are drawn once. If that does not suffice, lines of four pixels and wider are drawn by
-// the nearest edge of every pixel: their ends and joins are round then, and where outlines lie upon
-// each other the dashes of the nearest one are seen.
+// the nearest edge of every pixel, of those of all inks the one that gives it most: their ends and
+// joins are round then, rims are right within a tenth of a pixel, and where outlines lie upon each
+// other the dashes of the nearest one are seen.
 #pragma once
 
 #include <cstdint>
@@ -133,6 +134,7 @@ class Stroker {
   void meet(std::uint64_t place, std::uint32_t line, bool is_end, Pen& pen);
   Line leaving(std::uint32_t line, bool is_end) const;
   void draw_nearest(const Pen& pen, const Cancellation* cancellation);
+  std::vector<std::uint32_t> by_ink() const;
 
   View view_;
   double scale_ = 1;

@@ -16,7 +16,7 @@ struct TilePlan;
 
 /// Of the pictures of tiles: raised whenever the bytes of any tile become others although it is
 /// drawn from the same, so that nothing else of its fingerprint changes.
-constexpr int kPictureVersion = 1;
+constexpr int kPictureVersion = 2;
 
 /// Milliseconds that each step took. What tiles that are drawn together share is shared out evenly.
 struct PaintTimes {
