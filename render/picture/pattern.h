@@ -34,7 +34,10 @@ struct Pattern {
 };
 
 /// A pattern where it lies in one picture. It begins at the north-west corner of the world, so
-/// pictures of neighbouring tiles join. Once placed, it may be read by many threads.
+/// pictures of neighbouring tiles join. Where the world repeats from west to east, the pattern
+/// repeats with it: its size and angle are those next to what the style says for which that holds,
+/// which is at most 0.71 periods more or fewer in the whole width of the world. Once placed, it may
+/// be read by many threads.
 class PlacedPattern {
  public:
   /// `scale` is the picture's. Keeps its memory from one picture to the next.
@@ -72,15 +75,17 @@ class PlacedPattern {
                const ShareAt& share_at) const;
   void draw_dots(int row, std::size_t begin, std::size_t end, std::uint8_t* values) const;
   Phases phases_at(double x, double y) const;
+  void join_around_the_world(const View& view);
 
   PatternKind kind_ = PatternKind::none;
   int width_ = 0;
   int height_ = 0;
-  double period_ = 1;  // pixels, as the next four
+  double period_ = 1;  // pixels, as the next three
   double band_width_ = 1;
   double west_ = 0;  // of the middle of the first pixel, from the corner of the world
   double north_ = 0;
-  double along_x_ = 1;  // the direction of the pattern
+  // The direction of the pattern, as long as there are periods in a pixel.
+  double along_x_ = 1;
   double along_y_ = 0;
   Bands bands_;
 };
