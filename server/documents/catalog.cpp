@@ -98,12 +98,14 @@ Json parameters_json() {
   return parameters;
 }
 
-/// Middle of the bounds, and the zoom at which their width is about that of two tiles.
-Json center_json(const LayerSummary& summary) {
+/// Middle of the bounds, of the narrowest ones where these go over the antimeridian, and the zoom
+/// at which their width is about that of two tiles.
+Json center_json(const LayerSummary& summary, const LongitudeStrip& strip) {
   const auto [west, south, east, north] = summary.bounds();
-  const double width = std::max(east - west, 1e-6);
+  const double width = std::max(strip.east - strip.west, 1e-6);
   const int zoom = static_cast<int>(std::floor(std::log2(2 * 360 / width)));
-  return {round_degrees((west + east) / 2), round_degrees((south + north) / 2),
+  const double middle = (strip.west + strip.east) / 2;
+  return {round_degrees(middle > 180 ? middle - 360 : middle), round_degrees((south + north) / 2),
           std::clamp(zoom, summary.min_zoom, summary.max_zoom)};
 }
 
@@ -230,7 +232,7 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["maxzoom"] = summary.max_zoom;
   if (summary.detail_zoom) json["detail_zoom"] = *summary.detail_zoom;
   json["bounds"] = summary.bounds();
-  json["center"] = center_json(summary);
+  json["center"] = center_json(summary, strip_around_layers(request.layers, dataset));
   json["legend"] = legend_url(request, base_url);
   if (!classified->json.empty()) json["classification"] = classified->json;
   json["vector_layers"] = Json::array();  // TileJSON 3.0 wants it always; these are pictures

@@ -3,8 +3,10 @@
 // Thread-safety: any thread.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/grid/grid.h"
 
@@ -14,11 +16,16 @@ namespace trapeze {
 /// be written.
 std::optional<double> parse_number(std::string_view text, double min, double max);
 
+/// Four numbers from -`most` to `most`, with commas between.
+std::optional<std::array<double, 4>> parse_four_numbers(std::string_view text, double most);
+
 /// "longitude,latitude": the cell that holds the place; of those on the edge of the world the last.
 std::optional<Point> parse_place(std::string_view text);
 
-/// "west,south,east,north": from the cell of one corner to that of the other, neither west of east
-/// nor south of north.
-std::optional<Box> parse_box(std::string_view text);
+/// "west,south,east,north": from the cell of one corner to that of the other, south not north of
+/// north. Longitudes may be several worlds away, as in windows of the map, and where the west is
+/// east of the east, the box goes over the antimeridian (RFC 7946, 5.2): then it is two. What lies
+/// beyond the map in the north and south is left out. Nothing if the text is no box.
+std::vector<Box> parse_boxes(std::string_view text);
 
 }  // namespace trapeze

@@ -72,6 +72,9 @@ struct DrawnPiece {
 /// What of the layer is looked at: what lies in the view, and near it as far as outlines reach.
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view);
 
+/// How far outlines of the layer reach, in pixels; 0 if it has none.
+double reach_of_lines(const TilePlan& plan, const LayerPaint& paint);
+
 /// The dust that is gathered from grains, feature by feature, by when they were born.
 GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selection& selection);
 

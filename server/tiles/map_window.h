@@ -51,7 +51,8 @@ std::optional<Point> place_at(const View& view, double column, double row);
 std::optional<WindowSides> sides_in(Projection to, const WindowSides& sides, Projection from);
 
 /// The world repeats from west to east: the views, one for each of its copies that the picture
-/// reaches, in which that copy lies where the world is. Mostly there is one, the view itself.
-std::vector<View> views_of_copies(const View& view);
+/// reaches, in which that copy lies where the world is. Mostly there is one, the view itself. With
+/// `around`, also those that are so many pixels away: their outlines may reach into the picture.
+std::vector<View> views_of_copies(const View& view, double around = 0);
 
 }  // namespace trapeze
