@@ -1,6 +1,8 @@
 #include "render/mask/outline_field.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <utility>
 
 namespace trapeze {
@@ -16,8 +18,6 @@ struct Direction {
 constexpr std::array<Direction, 8> kAllAround = {
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
-constexpr float kSharesOfOne = 255;
-
 }  // namespace
 
 void OutlineField::begin(int width, int height, double reach) {
@@ -29,8 +29,13 @@ void OutlineField::begin(int width, int height, double reach) {
   most_squared_ = most * most;
   const auto pixels = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   cells_.clear();
+  first_of_round_ = 0;
+  cell_of_.assign(pixels, kNone);
   nearest_.assign(pixels, kNone);
-  squared_.assign(pixels, 0);
+  squared_.assign(pixels, std::numeric_limits<float>::infinity());
+  waiting_.clear();
+  nearer_.clear();
+  states_.assign(pixels, 0);
   steps_ = 0;
 }
 
@@ -58,12 +63,17 @@ void OutlineField::add_piece(int column, int row, PicturePlace from, PicturePlac
     };
     return CellPoint{parts(place.x - column), parts(place.y - row)};
   };
-  std::uint32_t& number = nearest_[place_of(column, row)];
+  std::uint32_t& number = cell_of_[place_of(column, row)];
   const CellPoint first = in_cell(from);
-  if (number == kNone) {
-    number = static_cast<std::uint32_t>(cells_.size());
+  if (number == kNone || number < first_of_round_) {
     Cell cell{static_cast<std::uint16_t>(column), static_cast<std::uint16_t>(row), {}, 0};
-    cell.outermost.fill(first);
+    // What earlier rounds added is as near as it was.
+    if (number == kNone) {
+      cell.outermost.fill(first);
+    } else {
+      cell.outermost = cells_[number].outermost;
+    }
+    number = static_cast<std::uint32_t>(cells_.size());
     cells_.push_back(cell);
   }
   Cell& cell = cells_[number];
@@ -78,6 +88,13 @@ void OutlineField::include(Cell& cell, CellPoint point) {
     CellPoint& outermost = cell.outermost[i];
     if (x * point.x + y * point.y > x * outermost.x + y * outermost.y) outermost = point;
   }
+}
+
+// From the centre of a pixel to the pixel that the cell is of.
+float OutlineField::least_squared_distance(const Cell& cell, int column, int row) {
+  const float x = std::max(static_cast<float>(std::abs(column - cell.column)) - 0.5f, 0.0f);
+  const float y = std::max(static_cast<float>(std::abs(row - cell.row)) - 0.5f, 0.0f);
+  return x * x + y * y;
 }
 
 // From the centre of a pixel to the border around the outermost points.
@@ -96,68 +113,40 @@ float OutlineField::squared_distance(const Cell& cell, int column, int row) {
     return dx * dx + dy * dy;
   };
   CellPoint before = cell.outermost.back();
-  float least = to_side(before, before);
+  float least = std::numeric_limits<float>::infinity();
   for (const CellPoint point : cell.outermost) {
     if (point != before) least = std::min(least, to_side(before, point));
     before = point;
   }
+  if (std::isinf(least)) least = to_side(before, before);
   return least * static_cast<float>(1 / (kParts * kParts));
 }
 
-void OutlineField::spread(const Cancellation* cancellation) {
-  for (const Cell& cell : cells_) {
-    squared_[place_of(cell.column, cell.row)] = squared_distance(cell, cell.column, cell.row);
-  }
-  CancellationCheck check(cancellation, 16);
-  for (int row = 0; row < rows_; ++row) {
-    check();
-    spread_row(row, row - 1);
-  }
-  for (int row = rows_ - 1; row >= 0; --row) {
-    check();
-    spread_row(row, row + 1);
-  }
-}
-
-// From the previous row, then along the row in both directions.
-void OutlineField::spread_row(int row, int previous_row) {
-  const bool has_previous = previous_row >= 0 && previous_row < rows_;
-  for (int column = 0; column < columns_; ++column) {
-    const std::size_t place = place_of(column, row);
-    if (has_previous) {
-      const std::size_t previous = place_of(column, previous_row);
-      pull(place, column, row, previous);
-      if (column > 0) pull(place, column, row, previous - 1);
-      if (column + 1 < columns_) pull(place, column, row, previous + 1);
-    }
-    if (column > 0) pull(place, column, row, place - 1);
-  }
-  for (int column = columns_ - 2; column >= 0; --column) {
-    const std::size_t place = place_of(column, row);
-    pull(place, column, row, place + 1);
-  }
-}
-
-void OutlineField::pull(std::size_t place, int column, int row, std::size_t from) {
-  const std::uint32_t number = nearest_[from];
-  if (number == kNone || number == nearest_[place] || squared_[from] > most_squared_) return;
+// If the cell is nearer to the pixel than the nearest one so far, it replaces that one, and the
+// pixel's neighbours have to be tried.
+void OutlineField::pull(std::uint32_t number, int column, int row) {
+  const std::size_t place = place_of(column, row);
+  if (number == nearest_[place]) return;
   ++steps_;
-  const float squared = squared_distance(cells_[number], column, row);
-  if (nearest_[place] != kNone && squared >= squared_[place]) return;
+  const Cell& cell = cells_[number];
+  const float nearest = std::min(squared_[place], most_squared_);
+  if (least_squared_distance(cell, column, row) >= nearest) return;
+  const float squared = squared_distance(cell, column, row);
+  if (squared >= nearest) return;
   nearest_[place] = number;
   squared_[place] = squared;
-}
-
-OutlineField::Nearest OutlineField::nearest(int column, int row) const {
-  const std::size_t place = place_of(column + margin_, row + margin_);
-  const std::uint32_t number = nearest_[place];
-  if (number == kNone) return {static_cast<float>(margin_), 0};
-  return {std::sqrt(squared_[place]), static_cast<float>(cells_[number].share) / kSharesOfOne};
+  const Pixel pixel{static_cast<std::uint16_t>(column), static_cast<std::uint16_t>(row)};
+  if ((states_[place] & kIsWaiting) == 0) waiting_.push_back(pixel);
+  if ((states_[place] & kIsNearer) == 0) nearer_.push_back(pixel);
+  states_[place] = kIsWaiting | kIsNearer;
 }
 
 std::size_t OutlineField::memory() const {
-  return cells_.capacity() * sizeof(Cell) + nearest_.capacity() * sizeof(std::uint32_t) +
-         squared_.capacity() * sizeof(float);
+  return cells_.capacity() * sizeof(Cell) +
+         (cell_of_.capacity() + nearest_.capacity()) * sizeof(std::uint32_t) +
+         squared_.capacity() * sizeof(float) +
+         (waiting_.capacity() + next_waiting_.capacity() + nearer_.capacity()) * sizeof(Pixel) +
+         states_.capacity();
 }
 
 }  // namespace trapeze

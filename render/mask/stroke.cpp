@@ -633,32 +633,45 @@ Stroker::Line Stroker::leaving(std::uint32_t line, bool is_end) const {
   return is_end ? lines_[line].turned() : lines_[line];
 }
 
-// In bands of rows, to bound memory.
+// In bands of rows, to bound memory; in each band, lines with more ink come first. So a pixel shows
+// the line that gives it the most ink, as if the lines were drawn one by one.
 void Stroker::draw_nearest(const Pen& pen, const Cancellation* cancellation) {
   values_ = 0;
   CancellationCheck check(cancellation, 1024);
+  const std::vector<std::uint32_t> order = by_ink();
   const int most_rows =
       std::max(1, static_cast<int>(kMostBandPixels / static_cast<std::size_t>(canvas_.width())));
   for (int first = 0; first < canvas_.height(); first += most_rows) {
     const int rows = std::min(most_rows, canvas_.height() - first);
     field_.begin(canvas_.width(), rows, pen.reach());
-    for (const Line& line : lines_) {
-      check();
-      const auto share_at = [&](double part) {
-        return line.ink * pen.dash_share(line, part * line.length);
-      };
-      field_.add({line.from.x, line.from.y - first}, {line.to.x, line.to.y - first}, share_at);
-    }
-    field_.spread(cancellation);
-    for (int row = 0; row < rows; ++row) {
-      std::uint8_t* out = canvas_.row(first + row, 0, canvas_.width());
-      for (int column = 0; column < canvas_.width(); ++column) {
-        const auto [distance, share] = field_.nearest(column, row);
-        out[column] = std::max(out[column], to_value(share * pen.across(distance)));
+    for (std::size_t i = 0; i < order.size();) {
+      const std::uint8_t ink = to_value(lines_[order[i]].ink);
+      for (; i < order.size() && to_value(lines_[order[i]].ink) == ink; ++i) {
+        check();
+        const Line& line = lines_[order[i]];
+        const auto share_at = [&](double part) { return pen.dash_share(line, part * line.length); };
+        field_.add({line.from.x, line.from.y - first}, {line.to.x, line.to.y - first}, share_at);
       }
+      const float share_of_ink = static_cast<float>(ink) / 255;
+      field_.spread(cancellation, [&](int column, int row, OutlineField::Nearest nearest) {
+        std::uint8_t& out = canvas_.row(first + row, column, column + 1)[column];
+        const float share = share_of_ink * nearest.share * pen.across(nearest.distance);
+        out = std::max(out, to_value(share));
+      });
     }
     values_ += field_.steps();
   }
+}
+
+// The lines that have any ink, in order of decreasing ink.
+std::vector<std::uint32_t> Stroker::by_ink() const {
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < lines_.size(); ++i) {
+    if (to_value(lines_[i].ink) > 0) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [this](std::uint32_t i) { return to_value(lines_[i].ink); });
+  return order;
 }
 
 }  // namespace trapeze

@@ -22,6 +22,8 @@ double band_value(double place, double period, double width) {
 }
 
 constexpr double kPhases = 4294967296.0;
+// Of worlds that are narrower, as they are in pictures of a few pixels, patterns are not changed.
+constexpr double kLeastPeriodsOfWorld = 4 - 1e-6;
 
 /// The phase of any number of periods.
 std::uint32_t to_phase(double periods) {
@@ -48,13 +50,27 @@ void PlacedPattern::place(const Pattern& pattern, const View& view, double scale
   width_ = view.width;
   height_ = view.height;
   const double angle = pattern.angle * std::numbers::pi / 180;
-  period_ = pattern.size * scale;
-  band_width_ = kind_ == PatternKind::checker ? period_ / 2 : pattern.width * scale;
-  along_x_ = std::cos(angle);
-  along_y_ = -std::sin(angle);  // rows run southwards
+  const double period = pattern.size * scale;
+  // Periods per pixel; rows run southwards.
+  along_x_ = std::cos(angle) / period;
+  along_y_ = -std::sin(angle) / period;
+  if (view.projection != Projection::plane) join_around_the_world(view);
+  period_ = 1 / std::sqrt(along_x_ * along_x_ + along_y_ * along_y_);
+  const double band_width = kind_ == PatternKind::checker ? period / 2 : pattern.width * scale;
+  band_width_ = band_width * (period_ / period);
   west_ = static_cast<double>(view.origin_x - kGridMin) / view.cells_per_pixel + 0.5;
   north_ = static_cast<double>(view.origin_y - kGridMin) / view.cells_per_row() + view.first_row;
   if (kind_ != PatternKind::none && kind_ != PatternKind::dots) bands_.assign(period_, band_width_);
+}
+
+// From one end of the world to the other, a whole number of periods in either direction of the
+// pattern: then a translation by the world leaves it as it is, and nobody sees where the world
+// begins.
+void PlacedPattern::join_around_the_world(const View& view) {
+  const double world = static_cast<double>(kGridSize) / view.cells_per_pixel;
+  if (std::hypot(along_x_, along_y_) * world < kLeastPeriodsOfWorld) return;
+  along_x_ = std::round(along_x_ * world) / world;
+  along_y_ = std::round(along_y_ * world) / world;
 }
 
 void PlacedPattern::draw(int row, std::size_t begin, std::size_t end, std::uint8_t* values) const {
@@ -105,7 +121,7 @@ void PlacedPattern::draw_dots(int row, std::size_t begin, std::size_t end,
 template <typename ShareAt>
 void PlacedPattern::draw_by(int row, std::size_t begin, std::size_t end, std::uint8_t* values,
                             const ShareAt& share_at) const {
-  const Phases step{to_phase(along_x_ / period_), to_phase(-along_y_ / period_)};
+  const Phases step{to_phase(along_x_), to_phase(-along_y_)};
   const auto columns = static_cast<std::uint32_t>(begin);
   Phases at = phases_at(west_, north_ + row + 0.5);
   at.along += columns * step.along;
@@ -118,8 +134,7 @@ void PlacedPattern::draw_by(int row, std::size_t begin, std::size_t end, std::ui
 }
 
 PlacedPattern::Phases PlacedPattern::phases_at(double x, double y) const {
-  return {to_phase((x * along_x_ + y * along_y_) / period_),
-          to_phase((y * along_x_ - x * along_y_) / period_)};
+  return {to_phase(x * along_x_ + y * along_y_), to_phase(y * along_x_ - x * along_y_)};
 }
 
 }  // namespace trapeze

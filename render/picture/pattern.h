@@ -34,7 +34,10 @@ struct Pattern {
 };
 
 /// A pattern at its position in one picture. It starts at the north-west corner of the world, so
-/// pictures of neighbouring tiles join. Once placed, it may be read by many threads.
+/// pictures of neighbouring tiles join. Where the world repeats from west to east, the pattern
+/// repeats with it: size and angle are rounded to the nearest values that allow this, which changes
+/// the number of periods across the world by at most 0.71. Once placed, it may be read by many
+/// threads.
 class PlacedPattern {
  public:
   /// `scale` is that of the picture. Reuses its memory from one picture to the next.
@@ -72,15 +75,17 @@ class PlacedPattern {
                const ShareAt& share_at) const;
   void draw_dots(int row, std::size_t begin, std::size_t end, std::uint8_t* values) const;
   Phases phases_at(double x, double y) const;
+  void join_around_the_world(const View& view);
 
   PatternKind kind_ = PatternKind::none;
   int width_ = 0;
   int height_ = 0;
-  double period_ = 1;  // pixels, like the next four
+  double period_ = 1;  // pixels, like the next three
   double band_width_ = 1;
   double west_ = 0;  // of the centre of the first pixel, from the corner of the world
   double north_ = 0;
-  double along_x_ = 1;  // the direction of the pattern
+  // The direction of the pattern, as long as there are periods in a pixel.
+  double along_x_ = 1;
   double along_y_ = 0;
   Bands bands_;
 };

@@ -215,10 +215,26 @@ class Comparison {
       const auto more = tiles_with_changes(*changes, drawing, request_.most_tiles);
       tiles.insert(tiles.end(), more.begin(), more.end());
     }
+    const auto has_lines = [](const LayerPaint& paint) { return paint.style.stroke.width > 0; };
+    if (std::ranges::any_of(before.layers, has_lines) ||
+        std::ranges::any_of(after.layers, has_lines)) {
+      add_across_the_antimeridian(tiles);
+    }
     const auto place = [](const TileId& tile) { return std::pair(tile.y, tile.x); };
     std::ranges::sort(tiles, {}, place);
     tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
     return tiles;
+  }
+
+  /// Adds the tiles at the other end of the world, since lines reach across the antimeridian.
+  static void add_across_the_antimeridian(std::vector<TileId>& tiles) {
+    const std::size_t count = tiles.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [z, x, y] = tiles[i];
+      const std::uint32_t last = (std::uint32_t{1} << z) - 1;
+      if (x == 0) tiles.push_back({z, last, y});
+      if (x == last) tiles.push_back({z, 0, y});
+    }
   }
 
   /// The tiles that differ.

@@ -42,6 +42,16 @@ struct LayerSummary {
 /// The problem is 404 for a name that is not in the dataset.
 Result<LayerSummary> summarize_layers(std::span<const std::string> names, const Dataset& dataset);
 
+/// The narrowest strip of longitudes, in degrees, that holds all polygons of the layers, to about a
+/// tenth of a degree where it goes over the antimeridian: then its east is greater than 180. Small
+/// polygons may be left out as they are at zoom 0. The world if there is nothing. `names` are in
+/// the dataset.
+struct LongitudeStrip {
+  double west = -180;
+  double east = 180;
+};
+LongitudeStrip strip_around_layers(std::span<const std::string> names, const Dataset& dataset);
+
 /// The problem to answer with for a layer name that is not in the dataset.
 Problem unknown_layer(const std::string& name, const Dataset& dataset);
 

@@ -24,11 +24,18 @@ namespace {
 constexpr std::array<std::string_view, 1> kOwnParameters = {"bbox"};
 constexpr std::string_view kPattern = "/values/{layer}/{attribute}";
 
-Result<std::optional<Box>> box_of(const DocumentRequest& request) {
+/// Without any, all counts.
+using Boxes = std::vector<Box>;
+
+Result<Boxes> boxes_of(const DocumentRequest& request) {
   const std::string* text = request.find("bbox");
-  if (text == nullptr) return std::optional<Box>();
-  if (const auto box = parse_box(*text)) return box;
-  const std::string takes = "west, south, east and north in degrees, separated by commas";
+  if (text == nullptr) return Boxes();
+  Boxes boxes = parse_boxes(*text);
+  if (!boxes.empty()) return boxes;
+  const std::string takes =
+      "west, south, east and north in degrees, separated by commas; over the antimeridian, the "
+      "west "
+      "is the greater";
   return Problem{400, fmt::format("The parameter bbox takes {}.", takes), "bbox", *text, takes};
 }
 
@@ -43,16 +50,18 @@ bool meets(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box)
          std::max(right.x_at(top), right.x_at(bottom)) >= box.min_x;
 }
 
-/// By row: whether the feature touches the box.
-std::vector<bool> rows_in(const Layer& layer, const Box& box) {
+/// By row: whether the feature touches one of the boxes.
+std::vector<bool> rows_in(const Layer& layer, const Boxes& boxes) {
   std::vector<bool> rows(layer.features().size());
   std::vector<TrapezoidRange> ranges;
-  layer.select({box, 0, kLastLevel, SmallPolygons::drop}, ranges);
-  for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    const std::uint32_t row = layer.feature_of(i);
-    if (row == Layer::kNoFeature || rows[row]) return;
-    rows[row] = meets(layer.mesh(), layer.mesh().trapezoids[i], box);
-  });
+  for (const Box& box : boxes) {
+    layer.select({box, 0, kLastLevel, SmallPolygons::drop}, ranges);
+    for_each_trapezoid(ranges, [&](std::uint32_t i) {
+      const std::uint32_t row = layer.feature_of(i);
+      if (row == Layer::kNoFeature || rows[row]) return;
+      rows[row] = meets(layer.mesh(), layer.mesh().trapezoids[i], box);
+    });
+  }
   return rows;
 }
 
@@ -121,10 +130,11 @@ Json quantiles_json(const std::vector<Counted>& values, std::size_t count) {
   return json;
 }
 
-void count_values(const Layer& layer, const LayerStyle& style, int field,
-                  const std::optional<Box>& box, Counts& counts) {
-  const bool is_part = box && !holds(*box, layer.bounds());
-  const std::vector<bool> rows = is_part ? rows_in(layer, *box) : std::vector<bool>();
+void count_values(const Layer& layer, const LayerStyle& style, int field, const Boxes& boxes,
+                  Counts& counts) {
+  const auto holds_all = [&](const Box& box) { return holds(box, layer.bounds()); };
+  const bool is_part = !boxes.empty() && std::ranges::none_of(boxes, holds_all);
+  const std::vector<bool> rows = is_part ? rows_in(layer, boxes) : std::vector<bool>();
   const Classing classing = style.classing.over(layer.features());
   const FeatureClassifier classifier(classing, layer.features());
   for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
@@ -137,21 +147,22 @@ void count_values(const Layer& layer, const LayerStyle& style, int field,
 /// Counts the values of the features that are drawn; the problem is one of the style, or a part of
 /// the layer that cannot be opened.
 Result<Counts> count_values(const ServedLayer& served, std::size_t position, int field,
-                            const StyleQuery& asked, const std::optional<Box>& box) {
+                            const StyleQuery& asked, const Boxes& boxes) {
   const auto query = complete_style(asked, served.config);
   if (!query) return query.problem();
   const auto style = layer_style(*query, served, position);
   if (!style) return style.problem();
   Counts counts;
   if (served.parts == nullptr) {
-    count_values(*served.layer, *style, field, box, counts);
+    count_values(*served.layer, *style, field, boxes, counts);
     return counts;
   }
   for (const auto& part : served.parts->parts()) {
-    if (box && !box->intersects(part->summary().bounds)) continue;
+    const auto is_in_part = [&](const Box& box) { return box.intersects(part->summary().bounds); };
+    if (!boxes.empty() && std::ranges::none_of(boxes, is_in_part)) continue;
     const auto layer = part->layer();  // kept alive by the part; texts are views of it
     if (layer == nullptr) return damaged_layer(served);
-    count_values(*layer, *style, field, box, counts);
+    count_values(*layer, *style, field, boxes, counts);
   }
   return counts;
 }
@@ -187,11 +198,11 @@ Result<Document> values_document(const DocumentRequest& request) {
   const FeatureTable& features = served.layer->features();
   const int field = features.field_index(request.path[2]);
   if (field < 0) return unknown_attribute(request.path[2], names.front());
-  const auto box = box_of(request);
-  if (!box) return box.problem();
+  const auto boxes = boxes_of(request);
+  if (!boxes) return boxes.problem();
   const auto style = request.style_for(names, kOwnParameters);
   if (!style) return style.problem();
-  const auto counts = count_values(served, *position, field, *style, *box);
+  const auto counts = count_values(served, *position, field, *style, *boxes);
   if (!counts) return counts.problem();
   return Document{
       "application/json",

@@ -97,12 +97,14 @@ Json parameters_json() {
   return parameters;
 }
 
-/// The centre of the bounds, and the zoom at which they are about two tiles wide.
-Json center_json(const LayerSummary& summary) {
+/// The centre of the bounds, or of the narrowest bounds if these cross the antimeridian, and the
+/// zoom at which they are about two tiles wide.
+Json center_json(const LayerSummary& summary, const LongitudeStrip& strip) {
   const auto [west, south, east, north] = summary.bounds();
-  const double width = std::max(east - west, 1e-6);
+  const double width = std::max(strip.east - strip.west, 1e-6);
   const int zoom = static_cast<int>(std::floor(std::log2(2 * 360 / width)));
-  return {round_degrees((west + east) / 2), round_degrees((south + north) / 2),
+  const double middle = (strip.west + strip.east) / 2;
+  return {round_degrees(middle > 180 ? middle - 360 : middle), round_degrees((south + north) / 2),
           std::clamp(zoom, summary.min_zoom, summary.max_zoom)};
 }
 
@@ -229,7 +231,7 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["maxzoom"] = summary.max_zoom;
   if (summary.detail_zoom) json["detail_zoom"] = *summary.detail_zoom;
   json["bounds"] = summary.bounds();
-  json["center"] = center_json(summary);
+  json["center"] = center_json(summary, strip_around_layers(request.layers, dataset));
   json["legend"] = legend_url(request, base_url);
   if (!classified->json.empty()) json["classification"] = classified->json;
   json["vector_layers"] = Json::array();  // required by TileJSON 3.0, though these are pictures

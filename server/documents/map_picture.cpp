@@ -21,21 +21,6 @@ constexpr std::string_view kPattern =
     "/map/{layers}.png?bbox=W,S,E,N or /map/{layers}/{lon},{lat},{zoom}/{width}x{height}.png";
 constexpr int kUsualSide = 1024;  // the longer side, in pixels at scale 1
 
-using FourNumbers = std::array<double, 4>;
-
-std::optional<FourNumbers> parse_four(std::string_view text, double most) {
-  FourNumbers numbers{};
-  for (double& number : numbers) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    const auto parsed = parse_number(text.substr(0, comma), -most, most);
-    const bool is_last = &number == &numbers.back();
-    if (!parsed || (comma == text.size()) != is_last) return std::nullopt;
-    number = *parsed;
-    text.remove_prefix(is_last ? comma : comma + 1);
-  }
-  return numbers;
-}
-
 std::optional<WindowSides> sides_between(GridPosition south_west, GridPosition north_east) {
   const WindowSides sides{south_west.x, north_east.y, north_east.x, south_west.y};
   if (!(sides.width() > 0 && sides.height() > 0)) return std::nullopt;
@@ -50,7 +35,7 @@ std::optional<WindowSides> sides_between(const MapSystem& system, const SystemBo
 std::optional<SystemBounds> parse_bounds(const MapSystem& system, std::string_view text,
                                          AxisOrder order) {
   const double middle = std::max(std::abs(system.middle_x), std::abs(system.middle_y));
-  const auto numbers = parse_four(text, middle + 2 * system.half_side * kMostWorlds);
+  const auto numbers = parse_four_numbers(text, middle + 2 * system.half_side * kMostWorlds);
   if (!numbers) return std::nullopt;
   const auto [a, b, c, d] = *numbers;
   const bool is_north_first = order == AxisOrder::of_authority && system.is_north_first;
@@ -222,7 +207,7 @@ Result<WindowRequest> parse_unstyled(const DocumentRequest& request) {
 }  // namespace
 
 std::optional<WindowSides> parse_window_in_degrees(std::string_view text) {
-  auto numbers = parse_four(text, 360.0 * kMostWorlds);
+  auto numbers = parse_four_numbers(text, 360.0 * kMostWorlds);
   if (!numbers) return std::nullopt;
   auto [west, south, east, north] = *numbers;
   if (std::abs(south) > 90 || std::abs(north) > 90) return std::nullopt;

@@ -238,11 +238,21 @@ bool KnownTiles::may_have_labels(const TileId& tile) const {
          labels_->is_any_from({*plan.dataset, plan.labels, View::of_tile(tile), 1});
 }
 
+// From the other end of the world.
+bool KnownTiles::may_have_lines_over_the_antimeridian(const TileId& tile) const {
+  const bool is_at_edge = tile.x == 0 || tile.x + 1 == std::uint32_t{1} << tile.z;
+  return is_at_edge && std::ranges::any_of(drawn_, [](const Drawn& drawn) {
+           return std::ranges::any_of(drawn.paints, [](const LayerPaint* paint) {
+             return paint != nullptr && paint->style.stroke.width > 0;
+           });
+         });
+}
+
 void KnownTiles::find_looks(const Step& step) {
   tile_ = step.tile;
   is_known_ = false;
   std::ranges::fill(looks_, std::nullopt);
-  if (may_have_labels(tile_)) return;
+  if (may_have_labels(tile_) || may_have_lines_over_the_antimeridian(tile_)) return;
   for (int zoom = first_zoom(tile_); zoom <= plan_.zooms().last; ++zoom) {
     std::optional<TileLook>& look = looks_[static_cast<std::size_t>(zoom)];
     look = find_look(step, zoom);

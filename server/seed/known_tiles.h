@@ -80,6 +80,7 @@ class KnownTiles {
   LevelSpanSelection selection_of(const Drawn& drawn, const TileId& tile) const;
   int first_zoom(const TileId& tile) const;
   bool may_have_labels(const TileId& tile) const;
+  bool may_have_lines_over_the_antimeridian(const TileId& tile) const;
   void find_looks(const Step& step);
   std::optional<TileLook> find_look(const Step& step, int zoom);
   enum class Seen : std::uint8_t { nothing, one_colour, something };

@@ -209,9 +209,21 @@ void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uin
 
 /// The box of the view with a margin of that many pixels.
 Box box_around(const View& view, double reach) {
+  if (view.box().is_empty()) {  // a copy of the world beside the picture
+    const int more = static_cast<int>(std::ceil(reach));
+    View around = view;
+    around.origin_x -= static_cast<std::int64_t>(std::ceil(more * view.cells_per_pixel));
+    around.width += 2 * more + 1;
+    return around.box_around(reach);
+  }
   return view.projection == Projection::plate_carree
              ? view.box_around(reach)
              : with_margin(view.box(), reach * view.longer_side());
+}
+
+double reach_of_lines(const TilePlan& plan, const LayerPaint& paint) {
+  const Stroke& stroke = paint.style.stroke;
+  return stroke.width > 0 ? stroke.reach(plan.scale) : 0;
 }
 
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {

@@ -73,6 +73,9 @@ struct DrawnPiece {
 /// Selects the features of the layer in the view, and around it as far as outlines reach.
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view);
 
+/// How far outlines of the layer reach, in pixels; 0 if it has none.
+double reach_of_lines(const TilePlan& plan, const LayerPaint& paint);
+
 /// The births of the dust that is collected from grains, feature by feature.
 GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selection& selection);
 

@@ -88,10 +88,11 @@ std::optional<WindowSides> sides_in(Projection to, const WindowSides& sides, Pro
   return made.height() > 0 ? std::optional(made) : std::nullopt;
 }
 
-std::vector<View> views_of_copies(const View& view) {
+std::vector<View> views_of_copies(const View& view, double around) {
   if (view.projection == Projection::plane) return {view};
-  const auto west = static_cast<double>(view.origin_x);
-  const double east = west + view.width * view.cells_per_pixel;
+  const double west = static_cast<double>(view.origin_x) - around * view.cells_per_pixel;
+  const double east =
+      static_cast<double>(view.origin_x) + (view.width + around) * view.cells_per_pixel;
   const auto last =
       static_cast<std::int64_t>(std::ceil((east - kGridMin) / static_cast<double>(kGridSize)) - 1);
   std::vector<View> views;

@@ -54,7 +54,8 @@ std::optional<WindowSides> sides_in(Projection to, const WindowSides& sides, Pro
 
 /// The views of the copies of the world that the picture reaches, one for each copy: the world
 /// repeats from west to east, and in each view that copy lies where the world is. Usually this is
-/// just the view itself.
-std::vector<View> views_of_copies(const View& view);
+/// just the view itself. With `around`, also copies up to so many pixels beyond the picture, whose
+/// outlines may reach into it.
+std::vector<View> views_of_copies(const View& view, double around = 0);
 
 }  // namespace trapeze

@@ -245,11 +245,10 @@ void TilePainter::release_memory() {
 // From the top down: anything below an opaque layer that covers everything is skipped.
 void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
   const Stopwatch stopwatch(sketch.times.select_ms);
-  const std::vector<View> copies = views_of_copies(sketch.view);
   for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
     if (!paint->style.is_visible()) continue;  // included for its marks only
     const std::size_t first = drawing_count_;
-    for (const View& copy : copies) {
+    for (const View& copy : views_of_copies(sketch.view, reach_of_lines(plan, *paint))) {
       if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
       LayerDrawing& drawing = drawings_[drawing_count_];
       if (drawing.select(plan, *paint, copy, pieces_for(plan, *paint, copy), tools_)) {

@@ -356,6 +356,55 @@ TEST_F(CrowdTest, DashesAreThoseOfTheNearestEdge) {
   EXPECT_NEAR(area(mask) / kPixels, 0.16 * 2 / 3, 0.01);
 }
 
+// Small rings have less ink: near them, the line of a large ring further away is the darker one.
+TEST_F(CrowdTest, OfAllLinesThatReachAPixelTheDarkestCounts) {
+  add_coast(1);
+  const std::size_t coast = edges_.size();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(5, 95);
+  std::uniform_real_distribution<double> ink(0.05, 1);
+  for (int ring = 0; ring < 600; ++ring) {
+    const double x = place(random);
+    const double y = place(random);
+    const double share = ink(random);
+    const auto first = static_cast<std::uint32_t>(vertices_.size());
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      vertices_.push_back({static_cast<std::int32_t>((x + std::cos(M_PI / 4 * i)) * kCells),
+                           static_cast<std::int32_t>((y + std::sin(M_PI / 4 * i)) * kCells)});
+      edges_.push_back({first + i, first + (i + 1) % 8, 0, 1, share});
+    }
+  }
+  for (std::size_t i = 0; i < coast; ++i) edges_[i].ink = 0.5;
+  for (const double width : {8.0, 20.0}) {
+    const Mask crowded = draw({width, {}, LineJoin::round});
+    ASSERT_LT(stroker_.values(), Stroker::kCrowd * kPixels) << width;
+    // One by one, each ring for itself, so that none is a crowd.
+    Mask alone = testing::mask_by(kSide, kSide, [](int, int) { return 0; });
+    std::vector<std::uint8_t> darkest = testing::values_of(alone);
+    for (std::size_t begin = 0; begin < edges_.size(); begin += 8) {
+      View view;
+      view.cells_per_pixel = kCells;
+      view.width = view.height = kSide;
+      stroker_.begin(view, 1);
+      stroker_.draw(vertices_, std::span(edges_).subspan(begin, 8), {width, {}, LineJoin::round});
+      Mask mask;
+      stroker_.finish(mask);
+      const auto values = testing::values_of(mask);
+      for (std::size_t i = 0; i < values.size(); ++i) darkest[i] = std::max(darkest[i], values[i]);
+    }
+    int others = 0;
+    for (int row = 0; row < kSide; ++row) {
+      for (int column = 0; column < kSide; ++column) {
+        const int expected = darkest[static_cast<std::size_t>(row * kSide + column)];
+        const int off = std::abs(crowded.at(column, row) - expected);
+        ASSERT_LE(off, 26) << column << " " << row << " " << width;
+        others += off > 2;
+      }
+    }
+    EXPECT_LT(others, static_cast<int>(kPixels) / 10) << width << ": along the rims of lines";
+  }
+}
+
 TEST_F(CrowdTest, EndsWhenItIsNotWantedAnyLonger) {
   for (unsigned seed = 0; seed < 5; ++seed) add_coast(seed);
   Cancellation cancellation;

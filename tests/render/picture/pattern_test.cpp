@@ -67,6 +67,47 @@ TEST(PatternTest, LinesRunInTheDirectionOfTheAngle) {
   }
 }
 
+TEST(PatternTest, GoesOnOverTheAntimeridian) {
+  for (const PatternKind kind : {PatternKind::checker, PatternKind::crosshatch, PatternKind::dots,
+                                 PatternKind::hatch, PatternKind::stripes}) {
+    for (const double size : {5.0, 13.0, 64.0}) {
+      for (const double angle : {0.0, 45.0, 100.0}) {
+        for (const auto& [zoom, scale] : {std::pair(0, 1), {0, 3}, {4, 1}, {22, 2}}) {
+          const Pattern pattern{kind, {}, size, angle, 4};
+          const std::uint32_t tiles = 1u << zoom;
+          // Over both ends of the world, as windows of the map are.
+          View over = View::of_tile({zoom, tiles - 1, 0}, scale);
+          View beyond = View::of_tile({zoom, 0, 0}, scale);
+          over.origin_x += static_cast<std::int64_t>(100 * over.cells_per_pixel);
+          beyond.origin_x += static_cast<std::int64_t>(100 * over.cells_per_pixel);
+          beyond.origin_x -= kGridSize / tiles;
+          const Mask east = draw(pattern, over, scale);
+          const Mask west = draw(pattern, beyond, scale);
+          for (int row = 0; row < over.height; row += 7) {
+            for (int column = 0; column < over.width; ++column) {
+              // Within a step of what is looked up.
+              ASSERT_NEAR(east.at(column, row), west.at(column, row), 4)
+                  << "kind " << static_cast<int>(kind) << " size " << size << " angle " << angle
+                  << " zoom " << zoom;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(PatternTest, WhereTheWorldDoesNotRepeatPatternsHaveTheirSize) {
+  View plane = View::of_tile({0, 0, 0});
+  plane.projection = Projection::plane;
+  const Mask mask = draw({PatternKind::hatch, {}, 20, 90, 1}, plane);
+  for (int column = 0; column < 236; ++column) {
+    ASSERT_NEAR(mask.at(column, 3), mask.at(column + 20, 3), 1) << column;
+  }
+  EXPECT_GT(mask.at(0, 3), 100);
+  EXPECT_EQ(mask.at(10, 3), 0);
+}
+
 TEST(PatternTest, NeighbouringTilesJoin) {
   for (const PatternKind kind : {PatternKind::checker, PatternKind::crosshatch, PatternKind::dots,
                                  PatternKind::hatch, PatternKind::stripes}) {

@@ -35,6 +35,19 @@ TEST_F(AttributeValuesTest, CountsAllFeaturesOrThoseOfABox) {
   EXPECT_TRUE(none["quantiles"].empty());
 }
 
+TEST_F(AttributeValuesTest, TakesBoxesOverTheAntimeridian) {
+  EXPECT_EQ(json("/values/rings/rank?bbox=170,-1,-59,1")["features"], 1) << "its west in the east";
+  EXPECT_EQ(json("/values/rings/rank?bbox=-60,-1,-170,1")["features"], 1) << "and its east";
+  EXPECT_EQ(json("/values/rings/rank?bbox=170,-1,-100,1")["features"], 0);
+  EXPECT_EQ(json("/values/rings/rank?bbox=180,-1,-100,1")["features"], 0);
+  // As maps have it, which go on east of the world and west of it.
+  EXPECT_EQ(json("/values/rings/rank?bbox=170,-1,301,1")["features"], 1);
+  EXPECT_EQ(json("/values/rings/rank?bbox=300,-1,301,1")["features"], 1);
+  EXPECT_EQ(json("/values/rings/rank?bbox=-420,-1,-419,1")["features"], 1);
+  EXPECT_EQ(json("/values/rings/rank?bbox=-500,-1,-460,1")["features"], 0);
+  EXPECT_EQ(json("/values/rings/rank?bbox=-900,-90,900,90")["features"], 1) << "all of the world";
+}
+
 TEST_F(AttributeValuesTest, CountsOnlyWhatIsDrawn) {
   EXPECT_EQ(json("/values/rings/rank?filter=rank%3D1")["features"], 1);
   EXPECT_EQ(json("/values/rings/rank?filter=rank%3E1")["features"], 0);
@@ -47,7 +60,8 @@ TEST_F(AttributeValuesTest, TextsHaveNoQuantiles) {
 }
 
 TEST_F(AttributeValuesTest, WhatIsWrongIsSaid) {
-  for (const char* box : {"", "1", "1,2,3", "1,2,3,4,5", "1,0,0,1", "0,1,1,0", "nan,0,1,1"}) {
+  for (const char* box :
+       {"", "1", "1,2,3", "1,2,3,4,5", "0,1,1,0", "0,-91,1,0", "0,0,1,91", "nan,0,1,1"}) {
     const auto response = sample_.get(std::string("/values/rings/rank?bbox=") + box);
     EXPECT_EQ(response.status, 400) << box;
     EXPECT_EQ(nlohmann::json::parse(*response.body)["parameter"], "bbox") << box;

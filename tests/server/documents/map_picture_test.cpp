@@ -48,6 +48,44 @@ class MapPictureTest : public ::testing::Test {
   testing::SampleSite sample_{true, {}, options()};
 };
 
+// Of tiles at both ends of the world, as of the window over the antimeridian.
+TEST_F(MapPictureTest, OutlinesReachOverTheAntimeridian) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("coast.geojson", R"({"type": "MultiPolygon", "coordinates":
+    [[[[150, 10], [179.9, 10], [179.9, 30], [150, 30], [150, 10]]],
+     [[[-180, 40], [-150, 40], [-150, 60], [-180, 60], [-180, 40]]],
+     [[[150, 40], [180, 40], [180, 70], [150, 50], [150, 40]]]]})");
+  sample_.data().set(Dataset::load(layers_of_files({file})));
+  for (const char* join : {"round", "bevel", "miter"}) {
+    for (const int zoom : {1, 4}) {
+      const std::string style =
+          fmt::format("quality=exact&stroke=000&stroke-width=20&stroke-linejoin={}", join);
+      const std::uint32_t last = (1u << zoom) - 1;
+      const std::uint32_t y = zoom == 1 ? 0 : 6;
+      const Picture west =
+          picture(fmt::format("/tiles/coast/{}/{}/{}.png?{}", zoom, last, y, style));
+      const Picture east = picture(fmt::format("/tiles/coast/{}/0/{}.png?{}", zoom, y, style));
+      const Picture both = picture(fmt::format("/map/coast.png?{}&width=512&height=256&{}",
+                                               bbox_of({zoom, last, y}, 2), style));
+      ASSERT_EQ(both.width, 512);
+      int inked = 0;
+      for (int row = 0; row < 256; ++row) {
+        for (int column = 0; column < 256; ++column) {
+          const auto off = [](Rgba a, Rgba b) {
+            return difference(channels_of(a), channels_of(b)).most;
+          };
+          ASSERT_LE(off(west.at(column, row), both.at(column, row)), 1)
+              << join << " " << zoom << " " << column << " " << row;
+          ASSERT_LE(off(east.at(column, row), both.at(column + 256, row)), 1)
+              << join << " " << zoom << " " << column << " " << row;
+        }
+        inked += east.at(2, row) == Rgba{0, 0, 0, 255};
+      }
+      EXPECT_GT(inked, 10) << "the coast is in the other half of the world";
+    }
+  }
+}
+
 TEST_F(MapPictureTest, TheWindowOfATileIsTheTile) {
   for (const char* style :
        {"", "stroke=000&stroke-width=3&stroke-dasharray=6,4", "pattern=hatch", "quality=exact"}) {

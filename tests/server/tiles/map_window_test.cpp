@@ -97,6 +97,18 @@ TEST(MapWindowTest, TheWorldIsSeenAsOftenAsTheWindowReachesIt) {
   EXPECT_EQ(copies_from(-kWorld, 2 * kWorld).size(), 4u);
 }
 
+TEST(MapWindowTest, LinesReachIntoThePictureFromTheNextCopyOfTheWorld) {
+  const View at_the_east = View::of_tile({3, 7, 2});
+  ASSERT_EQ(views_of_copies(at_the_east).size(), 1u);
+  const auto views = views_of_copies(at_the_east, 4.5);
+  ASSERT_EQ(views.size(), 2u);
+  EXPECT_EQ(views[0].origin_x, at_the_east.origin_x);
+  EXPECT_EQ(views[1].origin_x, at_the_east.origin_x - kGridSize);
+  EXPECT_EQ(views_of_copies(View::of_tile({3, 0, 2}), 4.5).size(), 2u);
+  EXPECT_EQ(views_of_copies(View::of_tile({3, 1, 2}), 4.5).size(), 1u);
+  EXPECT_EQ(views_of_copies(View::of_tile({0, 0, 0}), 4.5).size(), 3u);
+}
+
 TEST(MapWindowTest, AroundAPlaceIsWhereTheTileIs) {
   const TileId tile{5, 17, 11};
   const WindowSides sides = sides_of(tile);
