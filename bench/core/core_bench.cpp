@@ -1,19 +1,19 @@
-// What the core costs for each vertex, on polygons like those of maps and on hard ones of growing
-// size, and whether it grows faster than it may.
+// The cost of the core per vertex, on polygons like those of maps and on hard ones of growing size,
+// and whether it grows faster than allowed.
 //
 //   core_bench                                     everything, some minutes
 //   core_bench --benchmark_filter=buildings        a part
 //   TRAPEZE_DATA=folder core_bench                 the FlatGeobuf files of the folder as well
 //
 // Sweep: sorting the vertices and the plane sweep. Build: the same from rings as they are read,
-// with cleaning, noding where it is needed, and the loops. Weights: Douglas-Peucker. History: Build
-// and all versions for all tolerances, which is all that is done for a polygon before it is drawn.
-// Cores, of large polygons: History by as many threads as the name says, what share of the removals
-// is carried out in batches, and how many times as fast removals would be if every thread had a
-// core, counted by the trapezoids that they walk and touch.
+// with cleaning, noding where necessary, and the loops. Weights: Douglas-Peucker. History: Build
+// and all versions for all tolerances, which is all the work for a polygon before it is drawn.
+// Cores, for large polygons: History with the number of threads in the name, the share of removals
+// done in batches, and the speed-up of removals if every thread had a core, counted by the
+// trapezoids that they walk and touch.
 //
-// Every figure is measured three times; "min" is the one to read on a machine that does other
-// things too. The table at the end compares the families at their smallest and their largest.
+// Every figure is measured three times; use "min" on a machine with other load. The table at the
+// end compares the families at their smallest and their largest size.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -139,7 +139,7 @@ void record_on_cores(benchmark::State& state, Polygons& polygons, unsigned threa
       static_cast<double>(counts.walked) / static_cast<double>(counts.walked - counts.beside);
 }
 
-/// The polygons that were asked for last: repetitions follow each other.
+/// The polygons used last: repetitions are consecutive.
 Polygons& remembered(const std::string& name, const std::function<Polygons()>& make) {
   static std::string last;
   static Polygons polygons;
@@ -226,7 +226,7 @@ void add_files() {
   }
 }
 
-/// The usual table, and behind it how the time per vertex grows in each family.
+/// The usual table, followed by how the time per vertex grows in each family.
 class GrowthReporter : public benchmark::ConsoleReporter {
  public:
   GrowthReporter() : ConsoleReporter(OO_Tabular) {}
@@ -237,7 +237,7 @@ class GrowthReporter : public benchmark::ConsoleReporter {
       if (run.error_occurred || run.aggregate_name != "min") continue;
       const std::string name = run.run_name.function_name;
       const std::size_t slash = name.rfind('/');
-      if (slash == name.find('/')) continue;  // no size: not a family
+      if (slash == name.find('/')) continue;  // without a size, it is not a family
       const double n = std::stod(name.substr(slash + 1));
       figures_[name.substr(0, slash)][n] = run.counters.at(kPerVertex).value;
     }
@@ -246,8 +246,8 @@ class GrowthReporter : public benchmark::ConsoleReporter {
   void Finalize() override {
     ConsoleReporter::Finalize();
     // From 10^3 to 10^6 vertices log n doubles, and each step through a tree of all edges costs up
-    // to ten times more once the tree has outgrown the cache. What grows with n grows by 500 beyond
-    // log n, what grows with its root by 16.
+    // to ten times more once the tree has outgrown the cache. A cost that grows with n grows by 500
+    // beyond log n; one that grows with the root of n, by 16.
     constexpr double kAllowed = 12;
     std::printf(
         "\nns per vertex at the smallest and the largest size; \"growth\" is beyond log n\n");

@@ -2,12 +2,12 @@
 //
 //   TRAPEZE_DATA=folder coverage_bench
 //
-// Building from the file to the layer, on one core and on all; the memory of graphs and of layers;
-// tiles of zooms 0 to 14 that random vertices lie in, selected and drawn; the vertices that are
-// left at each zoom, beside those that mapshaper leaves at the same tolerance. And what building
-// blocks takes: a town with merge 4, against the same without. Of what was measured several
-// times the shortest counts, and of tiles the processor time: others who use the machine disturb
-// these least.
+// Measures building from the file to the layer, on one core and on all; the memory of graphs and of
+// layers; tiles at zooms 0 to 14 that contain random vertices, selected and drawn; and the vertices
+// that remain at each zoom, compared with those that mapshaper leaves at the same tolerance. Also
+// measures building blocks: a town with merge 4, compared with the same without. Of repeated
+// measurements, the shortest counts, and for tiles the processor time: these are least affected by
+// other load on the machine.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -37,10 +37,10 @@ namespace trapeze {
 namespace {
 
 constexpr int kLastZoom = 14;
-constexpr double kTolerance = 0.25;  // pixels, as requests have it if they do not say
-constexpr double kNoGaps = 0;        // that are closed
+constexpr double kTolerance = 0.25;  // pixels, the default of requests
+constexpr double kNoGaps = 0;        // gaps are not closed
 constexpr std::array kModes = {CoverageMode::off, CoverageMode::automatic};
-constexpr std::array kMerge = {0.0, 4.0};  // pixels: as they are, and as blocks
+constexpr std::array kMerge = {0.0, 4.0};  // pixels: without and with blocks
 
 struct Options {
   std::vector<std::string> layers{"europe_countries", "us_counties", "countries"};
@@ -85,7 +85,7 @@ Level level_of_zoom(int zoom) {
   return nearest_level(kTolerance * static_cast<double>(TileId{zoom, 0, 0}.side()) / kTilePixels);
 }
 
-/// A layer in both modes, by their order in kModes.
+/// A layer in both modes, in the order of kModes.
 struct Pair {
   std::array<std::unique_ptr<Layer>, kModes.size()> layers;
   std::array<Seconds, kModes.size()> one_core;
@@ -120,7 +120,7 @@ Pair build(const std::string& path, int rounds) {
   return pair;
 }
 
-/// Bytes of the graphs that the history is recorded from, if all were there at once.
+/// Bytes of the graphs that the history is recorded from, if all existed at the same time.
 std::size_t memory_of_graphs(std::vector<Rings> features, CoverageMode mode) {
   std::size_t bytes = 0;
   std::vector<bool> is_done(features.size());
@@ -150,7 +150,7 @@ std::size_t memory_of_graphs(std::vector<Rings> features, CoverageMode mode) {
   return bytes;
 }
 
-/// Milliseconds of processor time that a tile takes, selected and drawn, by mode.
+/// Milliseconds of processor time per tile, selected and drawn, by mode.
 std::array<double, kModes.size()> draw(const Pair& pair, const std::vector<TileId>& tiles,
                                        int rounds, MaskRenderer& renderer) {
   std::array<double, kModes.size()> sums{};
@@ -226,7 +226,8 @@ void report_tiles(const Options& options, const std::string& layer, const std::s
   }
 }
 
-/// Of the layer with coverage, by the same rule as mapshaper, which may not be there; and without.
+/// For the layer with coverage, with the same rule as mapshaper, if that is installed; and for the
+/// layer without coverage.
 void report_vertices(const std::string& name, const Layer& layer, const Layer& apart,
                      WeightRule rule, const Mapshaper* mapshaper, std::vector<Figure>& figures) {
   std::vector<double> tolerances;

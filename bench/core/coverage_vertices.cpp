@@ -13,10 +13,10 @@ namespace trapeze {
 namespace {
 
 constexpr const char* kMapshaperFolder = TRAPEZE_BENCH_FOLDER "/mapshaper";
-// mapshaper takes 0.65 times the square root of an area for its distance.
+// mapshaper uses 0.65 times the square root of an area as its distance.
 constexpr double kDistanceOfArea = 0.65;
 
-/// What lies beside an edge.
+/// A feature next to an edge.
 struct Beside {
   std::uint32_t edge;
   std::uint32_t feature;
@@ -24,7 +24,7 @@ struct Beside {
   friend auto operator<=>(const Beside&, const Beside&) = default;
 };
 
-/// A feature, or kNoFeature for what none covers, at a vertex.
+/// A feature at a vertex, or kNoFeature for the outside.
 struct Around {
   std::uint32_t vertex;
   std::uint32_t feature;
@@ -55,7 +55,7 @@ std::vector<Beside> boundary_of(const Layer& layer, Level level) {
   return boundary;
 }
 
-/// An edge with one feature beside it has the outside on its other side.
+/// An edge with a single feature has the outside on its other side.
 std::vector<Around> features_around(const MeshView& mesh, const std::vector<Beside>& boundary) {
   std::vector<Around> around;
   for (std::size_t i = 0; i < boundary.size(); ++i) {

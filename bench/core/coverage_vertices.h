@@ -1,4 +1,4 @@
-// How many vertices are left of a coverage at each zoom, and how many mapshaper leaves.
+// How many vertices of a coverage remain at each zoom, and how many mapshaper leaves.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@
 
 namespace trapeze {
 
-/// What is left of the boundaries of a layer, dust apart.
+/// What remains of the boundaries of a layer, without dust.
 struct VerticesLeft {
-  std::size_t positions = 0;  // of vertices; one that several polygons have counts once
-  std::size_t stored = 0;     // the same, but where polygons live apart each has its own
-  std::size_t junctions = 0;  // of these, where three or more features meet, or two and the outside
+  std::size_t positions = 0;  // of vertices; vertices shared by several polygons count once
+  std::size_t stored = 0;     // the same, but separate polygons each have their own
+  std::size_t junctions = 0;  // positions where three or more features meet, or two and the outside
 };
 
 VerticesLeft vertices_left(const Layer& layer, Level level);
 
-/// Simplifies the same coverage with mapshaper, to which it is given untouched as the program
-/// `trapeze` exports it; in a folder of its own.
+/// Simplifies the same coverage with mapshaper, from an unsimplified export by the program
+/// `trapeze`, in a folder of its own.
 class Mapshaper {
  public:
   /// Exports the file. Throws std::runtime_error if that fails.
@@ -30,9 +30,9 @@ class Mapshaper {
   /// Whether script/bootstrap has installed it.
   static bool is_installed();
 
-  /// Positions of vertices that are left at each of the tolerances, in cells: by Douglas-Peucker at
-  /// that distance, or by effective area, of which we take the square root as a distance. Throws
-  /// std::runtime_error if mapshaper fails.
+  /// The number of vertex positions that remain at each of the tolerances, in cells: by
+  /// Douglas-Peucker at that distance, or by effective area, whose square root we use as a
+  /// distance. Throws std::runtime_error if mapshaper fails.
   std::vector<std::size_t> vertices_left(WeightRule rule,
                                          const std::vector<double>& tolerances) const;
 

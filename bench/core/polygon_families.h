@@ -1,5 +1,5 @@
-// Polygons of any size in families: some like those of maps, some as hard on a plane sweep or on a
-// recursive partitioning as can be. Every polygon is a function of its size, the same on every
+// Families of polygons of any size: some like those of maps, others as hard as possible for a plane
+// sweep or a recursive partitioning. Every polygon is a function of its size, the same on every
 // machine and in every run, and its rings neither cross nor touch.
 #pragma once
 
@@ -26,8 +26,8 @@ inline Point cell_at(double x, double y) {
   return {static_cast<std::int32_t>(std::lround(x)), static_cast<std::int32_t>(std::lround(y))};
 }
 
-/// Numbers from [0, 1): the sequence is fixed, while that of the distributions of the standard
-/// library is up to the library.
+/// Numbers from [0, 1) in a fixed sequence; the distributions of the standard library depend on the
+/// library.
 class UnitNumbers {
  public:
   explicit UnitNumbers(std::uint32_t seed) : random_(seed) {}
@@ -83,7 +83,7 @@ inline Rings building(std::uint32_t seed) {
   return rings;
 }
 
-/// A coast: seen from the middle in one direction only once, with bays of all sizes.
+/// A coast: star-shaped around the centre, with bays of all sizes.
 inline Rings wiggly_star(std::size_t vertices) {
   UnitNumbers random(1);
   const double step = 2 * std::numbers::pi / static_cast<double>(vertices);
@@ -121,7 +121,7 @@ Rings comb_of(std::size_t vertices, const Length& length) {
   return rings;
 }
 
-/// Teeth nearly as long as all of it: all edges cross the sweep line at once.
+/// Teeth nearly as long as the polygon: all edges cross the sweep line at the same time.
 inline Rings long_edges(std::size_t vertices) {
   UnitNumbers random(3);
   return comb_of(vertices, [&](std::size_t, std::size_t) { return 0.999 + 0.001 * random.next(); });
@@ -132,14 +132,15 @@ inline Rings comb(std::size_t vertices) {
   return comb_of(vertices, [&](std::size_t, std::size_t) { return 0.01 + 0.99 * random.next(); });
 }
 
-/// Each tooth longer than the one before: the farthest vertex is always the last one.
+/// Each tooth is longer than the one before: the farthest vertex is always the last one.
 inline Rings sorted_comb(std::size_t vertices) {
   return comb_of(vertices, [](std::size_t i, std::size_t teeth) {
     return static_cast<double>(i + 1) / static_cast<double>(teeth);
   });
 }
 
-/// A band of twenty vertices a turn on either side, wound as often as the vertices last.
+/// A band with twenty vertices per turn on either side, with as many turns as there are vertices
+/// for.
 inline Rings spiral(std::size_t vertices) {
   constexpr double kPerTurn = 20;
   const std::size_t steps = vertices / 2;
@@ -179,7 +180,7 @@ inline Rings grid_of_holes(std::size_t vertices) {
   return rings;
 }
 
-/// Long teeth lying on their sides: edges are nearly level, and few cross the sweep line at once.
+/// Long horizontal teeth: edges are nearly level, and few cross the sweep line at the same time.
 inline Rings zigzag(std::size_t vertices) {
   Rings rings = long_edges(vertices);
   for (Point& p : rings.points) std::swap(p.x, p.y);
@@ -207,7 +208,7 @@ inline Rings staircase(std::size_t vertices) {
   return rings;
 }
 
-/// Teeth with right angles, all of one length: all vertices are on three levels.
+/// Teeth with right angles, all of the same length: all vertices are on three levels.
 inline Rings battlement(std::size_t vertices) {
   const std::size_t teeth = std::max<std::size_t>(1, vertices / 4);
   const double width = 2 * kFamilyReach / static_cast<double>(teeth);

@@ -1,5 +1,5 @@
-// What preparing again costs when one feature in a thousand has changed: with what was prepared
-// before at hand, and anew, in turns.
+// The cost of preparing again after one feature in a thousand has changed: reusing the earlier
+// prepared file, and from scratch, in turns.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -37,13 +37,13 @@ struct Options {
   std::string json = "reuse.json";
 };
 
-/// Blocks of 6 x 4 parcels, streets between them: vertices of borders are shared, three on each
-/// side of a parcel beside its corners.
+/// Blocks of 6 x 4 parcels, with streets between them: borders share vertices, three on each side
+/// of a parcel besides its corners.
 Features make_parcels(int blocks) {
   constexpr double kSize = 0.0004;  // degrees
   constexpr int kWide = 6;
   constexpr int kHigh = 4;
-  constexpr int kSteps = 4;  // of a side
+  constexpr int kSteps = 4;  // per side
   std::mt19937 random(1);
   std::uniform_real_distribution<double> off(-0.05, 0.05);
   const int columns = std::max(1, static_cast<int>(std::sqrt(blocks)));
@@ -51,7 +51,7 @@ Features make_parcels(int blocks) {
   for (int block = 0; block < blocks; ++block) {
     const double x0 = 10 + (block % columns) * kSize * (kWide + 1);
     const double y0 = 45 + (block / columns) * kSize * (kHigh + 1);
-    // A lattice of all places where a vertex may be, moved a little.
+    // A lattice of all possible positions of vertices, each slightly moved.
     constexpr int kAcross = kWide * kSteps + 1;
     std::vector<OGRPoint> lattice;
     for (int y = 0; y <= kHigh * kSteps; ++y) {
@@ -79,7 +79,7 @@ Features make_parcels(int blocks) {
   return features;
 }
 
-/// The polygons of a file, each part of one a feature.
+/// The polygons of a file; each part of a multipolygon is a feature.
 Features read_features(const std::string& path) {
   const GDALDatasetUniquePtr source(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR));
   if (source == nullptr) throw std::runtime_error(path + ": cannot be opened");
@@ -103,7 +103,7 @@ void write(const Features& features, const std::string& path) {
   OGRSpatialReference degrees;
   degrees.SetFromUserInput("OGC:CRS84");
   CPLStringList options;
-  options.SetNameValue("SPATIAL_INDEX", "NO");  // which would put them in another order
+  options.SetNameValue("SPATIAL_INDEX", "NO");  // which would change their order
   OGRLayer* layer = out->CreateLayer("layer", &degrees, wkbPolygon, options.List());
   for (const auto& polygon : features) {
     const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
@@ -114,7 +114,7 @@ void write(const Features& features, const std::string& path) {
   }
 }
 
-/// Moves a vertex of each of that share of the features by some metres.
+/// Moves a vertex of each feature in that share by some metres.
 void change(double share, Features& features) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> by(-5e-5, 5e-5);
@@ -130,14 +130,14 @@ void change(double share, Features& features) {
 }
 
 struct Seconds {
-  double beyond_reading = std::numeric_limits<double>::infinity();  // with writing
+  double beyond_reading = std::numeric_limits<double>::infinity();  // including writing
   double all = std::numeric_limits<double>::infinity();
   std::size_t taken_over = 0;
   std::size_t features = 0;
 };
 
-/// Prepares the source, and keeps the shortest times. What was prepared before is opened as a part
-/// of it.
+/// Prepares the source, and keeps the shortest times. Opening the earlier prepared file is
+/// included.
 void prepare(const std::string& source, const std::string& earlier, const std::string& output,
              Seconds& shortest) {
   using Clock = std::chrono::steady_clock;

@@ -1,4 +1,4 @@
-// The rings of the polygons of a file, one set for each feature, for benchmarks of the core.
+// The rings of the polygons of a file, one set per feature, for benchmarks of the core.
 #pragma once
 
 #include <string>

@@ -96,7 +96,7 @@ void AdaptingLayer::list(std::size_t p) {
   polygon.is_listed = true;
 }
 
-// Numbers of vertices follow each other from top to bottom, so that levels are compared by numbers.
+// Vertices are numbered from top to bottom, so levels can be compared by numbers.
 void AdaptingLayer::append_within(const Polygon& polygon, std::uint32_t vertex_count,
                                   const Box& box, NumberedList& trapezoids) const {
   const auto first = vertices_.begin() + polygon.first_vertex;

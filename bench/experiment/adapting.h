@@ -1,9 +1,9 @@
-// The paper's contestant: one mutable trapezoidal graph a polygon, adapted in place to the
+// The paper's contestant: one mutable trapezoidal graph per polygon, adapted in place to the
 // tolerance of the view, forward and back. Vertices are sent once; a view sends the numbers of the
 // vertices of its trapezoids.
 //
-// The sequence of removals is found while the map is prepared; views play it forward and back. The
-// top of its priority stack tells of a polygon whether a tolerance changes it at all, and its
+// The sequence of removals is computed while the map is prepared; views play it forward and back.
+// The top of a polygon's priority stack shows whether a tolerance changes it at all, and its
 // trapezoids are listed again only after it has changed.
 #pragma once
 
@@ -17,37 +17,38 @@
 
 namespace trapeze::experiment {
 
-/// Trapezoids as they are sent.
+/// Trapezoids in the form in which they are sent.
 using NumberedList = std::vector<VertexNumbers>;
 
-/// The graphs of a layer. Belongs to one thread.
+/// The graphs of a layer. Used by one thread.
 class AdaptingLayer {
  public:
-  /// Appends its vertices to `vertices`, which are those of all layers and outlive it.
+  /// Appends its vertices to `vertices`, which are those of all layers and must outlive it.
   AdaptingLayer(const PolygonSet& polygons, Topology topology, std::vector<Point>& vertices);
 
-  /// Brings all graphs back to full detail.
+  /// Resets all graphs to full detail.
   void start_run();
-  /// Brings the graphs of all polygons that meet the box to the tolerance.
+  /// Adapts the graphs of all polygons that intersect the box to the tolerance.
   void adapt(const Box& box, double epsilon);
-  /// Appends the trapezoids of these polygons, but for those beyond the box.
+  /// Appends the trapezoids of these polygons, except those outside the box.
   void append_trapezoids(const Box& box, NumberedList& trapezoids);
 
  private:
-  /// How far west and east a trapezoid may reach.
+  /// The extent of a trapezoid in x.
   struct Reach {
     std::int32_t min_x = 0;
     std::int32_t max_x = 0;
   };
 
-  // What a view looks at for every polygon; the graph itself only if it has to change.
+  // The data that a view reads for every polygon; the graph itself is only needed if it has to
+  // change.
   struct Polygon {
     Box box;
     std::uint32_t first_vertex = 0;       // the number of vertex 1 of the graph
     bool is_listed = false;               // `trapezoids` are those of the graph
     AdaptableGraph::Unchanged unchanged;  // the top of its priority stack
     NumberedList trapezoids;
-    std::vector<Reach> reaches;  // of these
+    std::vector<Reach> reaches;  // of these trapezoids
   };
 
   void adapt(std::size_t polygon, double epsilon);

@@ -1,4 +1,4 @@
-// What lies beyond a view need not be drawn as it is: only what is in the view counts.
+// Simplifies the parts of polygons outside a view, which need not be drawn accurately.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace trapeze::experiment {
 
-/// Appends rings `first` .. `last` - 1 with short cuts: of vertices in a row that all lie left,
-/// right, above or below of `view`, the first and the last are left. By even-odd the same points of
-/// the view are inside as before. Beyond the view edges may come to cross; rings with nothing
-/// in the view may go.
+/// Appends rings `first` .. `last` - 1 with short cuts: of consecutive vertices that are all left
+/// of, right of, above or below `view`, only the first and the last remain. By the even-odd rule,
+/// the same points of the view are inside as before. Outside the view, edges may cross; rings with
+/// no part in the view may be removed.
 void append_with_short_cuts(const Rings& rings, std::uint32_t first, std::uint32_t last,
                             const Box& view, Rings& shortened);
 

@@ -7,7 +7,7 @@
 namespace trapeze::experiment {
 namespace {
 
-/// A chain whose node is not yet made, and where the number of that node is to be written.
+/// A chain whose node has not been created yet, and where to store the number of that node.
 struct Unbuilt {
   std::uint32_t begin;
   std::uint32_t end;

@@ -1,5 +1,5 @@
 // Binary line generalization trees (van Oosterom 1989): Douglas and Peucker's partitioning of every
-// ring, made once. A view descends as far as its tolerance asks for, and touches nothing below.
+// ring, computed once. A view descends as far as its tolerance requires, and touches nothing below.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ class BlgTrees final : public RingSimplifier {
  private:
   struct Node {
     std::uint32_t vertex;
-    std::uint32_t before;  // node that splits the chain before the vertex; kNoVertex if none
+    std::uint32_t before;  // node that splits the chain before the vertex, or kNoVertex
     std::uint32_t after;
     double distance;  // cells
   };

@@ -60,8 +60,8 @@ bool is_for_reference(Method method) {
          method == Method::no_simplification;
 }
 
-// Where nothing is simplified there is nothing to keep consistent, and constraints that cross are a
-// case of their own for a triangulation. The whole of a large map takes minutes.
+// Without simplification, consistency does not matter, and a triangulation would have to handle
+// crossing constraints as a special case. The whole of a large map takes minutes.
 bool is_possible(Method method, Topology topology, const Map& map) {
   if (!is_for_reference(method)) return true;
   if (topology != Topology::strict) return false;

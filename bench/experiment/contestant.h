@@ -1,5 +1,5 @@
-// Ways of drawing a map of polygons, simplified for every view. All draw through the same screen,
-// each with one thread of its own; what the device does with its threads is up to the device.
+// Methods of drawing a map of polygons, simplified for every view. All draw through the same
+// screen, each in a single thread; the device may use further threads.
 #pragma once
 
 #include <cstdint>
@@ -14,27 +14,27 @@
 
 namespace trapeze::experiment {
 
-/// What a view is drawn with. The tolerance is that of a level of the ladder, so that it is exactly
-/// the same for all.
+/// The parameters of drawing a view. The tolerance is that of a level of the ladder, so that it is
+/// exactly the same for all.
 struct ScaledView {
   View view;
   Level level = 0;
-  double scale = 0;  // 1 : scale, at the map's middle
+  double scale = 0;  // 1 : scale, at the centre of the map
 
   double epsilon() const { return epsilon_of_level(level); }
 };
 
-/// What one view cost.
+/// The cost of one view.
 struct ViewCost {
   double simplify_ms = 0;
-  double tessellate_ms = 0;  // 0 where it is one with simplifying
+  double tessellate_ms = 0;  // 0 if it is part of simplifying
   double send_ms = 0;
-  double draw_ms = 0;  // until the device has added up what is covered
-  double read_ms = 0;  // until the masks are in memory: much the same for all
-  // Processor time of all threads of the program, those of a software device among them.
+  double draw_ms = 0;  // until the device has summed the covered areas
+  double read_ms = 0;  // until the masks are in memory: about the same for all
+  // Processor time of all threads of the program, including those of a software device.
   double cpu_before_draw_ms = 0;
   double cpu_ms = 0;
-  std::uint64_t vertices = 0;    // of the simplified polygons; 0 where nobody counts them
+  std::uint64_t vertices = 0;    // of the simplified polygons; 0 if not counted
   std::uint64_t trapezoids = 0;  // drawn
   std::uint64_t bytes = 0;       // sent to the device
 
@@ -46,22 +46,22 @@ struct ViewCost {
   }
 };
 
-/// Belongs to one thread.
+/// Used by one thread.
 class Contestant {
  public:
   virtual ~Contestant() = default;
 
-  /// Before the views of a run: as if the map had just been opened.
+  /// Called before the views of a run: resets to the state after opening the map.
   virtual void start_run() {}
 
   /// Bytes sent to the device before the first view.
   virtual std::uint64_t sent_before() const { return 0; }
 
-  /// Heap memory of the map that it cannot do without, bytes: where views are made of the polygons
-  /// themselves.
+  /// Heap memory of the map that the method needs, in bytes: not 0 if views are computed from the
+  /// polygons themselves.
   virtual std::size_t shared_memory() const { return 0; }
 
-  /// Draws all layers, each into its own mask; `masks` is resized to the layers.
+  /// Draws all layers, each into its own mask; `masks` is resized to the number of layers.
   virtual ViewCost draw(const ScaledView& view, std::vector<Mask>& masks) = 0;
 };
 
@@ -85,14 +85,14 @@ std::string_view name_of(Method method);
 /// For readers.
 std::string_view title_of(Method method);
 
-/// Whether that method is there for comparison with the other ones only.
+/// Whether the method is only included as a reference for the others.
 bool is_for_reference(Method method);
 
-/// Whether that method can be tried on that map with that topology in this program.
+/// Whether the method can be run on that map with that topology in this program.
 bool is_possible(Method method, Topology topology, const Map& map);
 
-/// Prepares everything that a method prepares before the first view. Both arguments must outlive
-/// the contestant.
+/// Does all preparation of a method before the first view. Both references must outlive the
+/// contestant.
 std::unique_ptr<Contestant> make_contestant(Method method, Topology topology, const Map& map,
                                             Screen& screen);
 

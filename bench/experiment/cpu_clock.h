@@ -1,11 +1,11 @@
-// Processor time, which other programs on the machine hardly disturb.
+// Processor time, which other programs on the machine hardly affect.
 #pragma once
 
 #include <ctime>
 
 namespace trapeze::experiment {
 
-/// Milliseconds that all threads of the program have used so far.
+/// Milliseconds used by all threads of the program so far.
 inline double cpu_clock_ms() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);

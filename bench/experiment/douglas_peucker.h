@@ -1,4 +1,4 @@
-// Douglas and Peucker's simplification, done anew for every view.
+// Douglas and Peucker's simplification, repeated for every view.
 #pragma once
 
 #include "bench/experiment/chains.h"
@@ -9,7 +9,7 @@ namespace trapeze::experiment {
 
 class DouglasPeucker final : public RingSimplifier {
  public:
-  /// `polygons` must outlive this.
+  /// `polygons` must outlive this object.
   explicit DouglasPeucker(const PolygonSet& polygons) : polygons_(polygons) {}
 
   void simplify(std::uint32_t ring, double epsilon, std::vector<Chain>& chains) override;

@@ -18,10 +18,10 @@ namespace trapeze::experiment {
 namespace {
 
 constexpr std::size_t kFewest = 1000;
-constexpr double kEnoughMs = 2000;  // of one measurement that need not be repeated
+constexpr double kEnoughMs = 2000;  // a measurement of that length need not be repeated
 constexpr int kRepetitions = 3;
 
-/// `measure` makes one measurement and writes it down.
+/// `measure` makes one measurement and records it.
 template <class Measure>
 void repeat(const Measure& measure) {
   double spent_ms = 0;

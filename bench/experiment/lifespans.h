@@ -1,6 +1,6 @@
 // Trapeze: all versions of all trapezoids are on the device from the beginning, and a view selects
-// those that are alive at its tolerance; with dust or, as the other contestants do it, without what
-// is too small for the tolerance. And, for reference, full detail in every view.
+// those that are alive at its tolerance, either with dust or, like the other contestants, without
+// features too small for the tolerance. Also, for reference, full detail in every view.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// The paper's experiment (sections 4 and 5.1), and what was added to it. `trapeze bench experiment`
-// starts this program.
+// The paper's experiment (sections 4 and 5.1), with additions. Started by `trapeze bench
+// experiment`.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdlib>
@@ -183,7 +183,7 @@ void measure_quality_of_all(const Map& map, const std::vector<ScaledView>& trip,
     }
     return all;
   };
-  // Nobody is timed here.
+  // No times are measured here.
   auto fast = std::async(std::launch::async, measure, Topology::fast);
   report.quality = measure(Topology::strict);
   const std::vector<Quality> without = fast.get();

@@ -27,7 +27,7 @@ Box box_of(const std::vector<Rings>& features) {
   return box;
 }
 
-/// Moves the features so that their box lies below `upper`, one above the other's middle.
+/// Moves the features so that their box is below `upper`, horizontally centred on it.
 void move_below(const Box& upper, std::vector<Rings>& features) {
   const Box box = box_of(features);
   const std::int64_t middle = (std::int64_t{upper.min_x} + upper.max_x) / 2;
@@ -48,7 +48,7 @@ MapLayer load_layer_of(const LayerSource& source) {
   return layer;
 }
 
-/// Layers that are to be moved below the same one are moved together.
+/// Layers to be moved below the same one are moved together.
 void place_layers(std::vector<MapLayer>& layers) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const std::string& below = layers[i].source.below;
@@ -94,7 +94,7 @@ MapSource sample_world(const std::string& sample) {
       "The sample world: countries, and bodies of water",
       kOpenStreetMap,
       {{file("countries"), "countries", packages, ""}, {file("water"), "water", packages, ""}}};
-  // The outlines are exact to about a kilometre.
+  // The outlines are accurate to about a kilometre.
   world.smallest_scale *= 400;
   world.largest_scale *= 400;
   return world;

@@ -1,8 +1,8 @@
 // The maps of the experiment: layers of polygons, the same for all contestants.
 //
-// Every source passes through the same door: its rings are snapped to the grid, cleaned and noded
-// as for a layer that is served, and taken apart into single polygons with their holes. So nobody
-// starts with geometry that somebody else would have to repair.
+// All sources are processed in the same way: rings are snapped to the grid, cleaned and noded as
+// for a layer that is served, and split into single polygons with their holes. So no contestant
+// starts with geometry that another one would have to repair.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace trapeze::experiment {
 
-/// Polygons one after another, each a shell and its holes. Every ring begins at its topmost vertex.
+/// Consecutive polygons, each a shell and its holes. Every ring begins at its topmost vertex.
 struct PolygonSet {
   Rings rings;
   std::vector<std::uint32_t> ends;            // polygon i is rings ends[i - 1] .. ends[i] - 1
@@ -30,30 +30,31 @@ struct PolygonSet {
     return polygon == 0 ? 0 : ends[polygon - 1];
   }
   std::size_t memory() const;
-  /// Appends the polygons that the rings of a feature amount to.
+  /// Appends the polygons formed by the rings of a feature.
   void add_feature(Rings rings);
 };
 
-/// The vertex of a ring that is farthest from its first one, of equally distant ones the uppermost.
+/// The vertex of a ring that is farthest from its first one; the uppermost in case of a tie.
 std::uint32_t second_anchor_of(std::span<const Point> ring);
 
-/// A file and where its polygons are put.
+/// A file and the position of its polygons.
 struct LayerSource {
   std::string file;
   std::string title;
-  std::string origin;  // where the data is from
-  /// Name of the layer below whose box this one is moved, without change of scale; none if empty.
+  std::string origin;  // the origin of the data
+  /// Name of the layer below whose box this one is moved, without changing its scale; empty: it is
+  /// not moved.
   std::string below;
 };
 
 struct MapLayer {
   LayerSource source;
-  std::vector<Rings> features;  // as they are on the grid
+  std::vector<Rings> features;  // on the grid
   PolygonSet polygons;
   std::size_t vertices = 0;
 };
 
-/// Scales are those of the map's middle: 1 : `largest_scale` is the closest view.
+/// Scales apply to the centre of the map: 1 : `largest_scale` is the closest view.
 struct MapSource {
   std::string name;
   std::string title;
@@ -72,14 +73,14 @@ struct Map {
   std::size_t vertex_count() const;
 };
 
-/// Throws std::runtime_error if a file cannot be read or holds no polygons.
+/// Throws std::runtime_error if a file cannot be read or contains no polygons.
 Map load_map(const MapSource& source);
 
-/// What a contestant that keeps lifespans draws from; rows are features.
+/// The layer that contestants with lifespans draw from; rows are features.
 std::unique_ptr<Layer> build_layer(const MapLayer& layer, Topology topology);
 
-/// The maps of the page, those whose files are there: `data` is the folder of real layers, may be
-/// empty, `sample` that of the sample world.
+/// The maps of the page whose files exist: `data` is the folder of real layers and may be empty,
+/// `sample` that of the sample world.
 std::vector<MapSource> known_maps(const std::string& data, const std::string& sample);
 
 }  // namespace trapeze::experiment

@@ -1,5 +1,5 @@
-// The paper's way to the device: vertices are sent once; a view sends the numbers of the vertices
-// of its trapezoids, and the device looks up where these are.
+// The paper's transfer to the device: vertices are sent once; a view sends the numbers of the
+// vertices of its trapezoids, and the device looks up their positions.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace trapeze::experiment {
 
-/// The numbers of the six vertices that make up a trapezoid.
+/// The numbers of the six vertices that define a trapezoid.
 struct VertexNumbers {
   std::uint32_t top = 0;
   std::uint32_t bottom = 0;
@@ -22,17 +22,17 @@ struct VertexNumbers {
 
 class NumberedTrapezoids {
  public:
-  /// Sends the vertices. `screen` must outlive this. Throws std::runtime_error if the device cannot
-  /// compute.
+  /// Sends the vertices. `screen` must outlive this object. Throws std::runtime_error if the device
+  /// does not support compute shaders.
   NumberedTrapezoids(Screen& screen, std::span<const Point> vertices);
   ~NumberedTrapezoids();
   NumberedTrapezoids(const NumberedTrapezoids&) = delete;
   NumberedTrapezoids& operator=(const NumberedTrapezoids&) = delete;
 
-  /// Sends the numbers, and waits until the device has made trapezoids of them.
+  /// Sends the numbers, and waits until the device has converted them to trapezoids.
   void send(std::span<const VertexNumbers> numbers);
 
-  /// As DeviceTrapezoids.
+  /// As in DeviceTrapezoids.
   DrawTimes draw(std::span<const std::uint32_t> ends, const View& view, std::vector<Mask>& masks) {
     return trapezoids_.draw(ends, view, masks);
   }

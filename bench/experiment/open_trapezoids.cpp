@@ -8,7 +8,7 @@
 namespace trapeze::experiment {
 namespace {
 
-// Fewer than this are sorted and searched one by one.
+// Fewer items than this are sorted and searched linearly.
 constexpr std::size_t kFew = 16;
 
 constexpr Point point_of_key(std::uint64_t key) {
@@ -80,8 +80,8 @@ bool OpenTrapezoids::sweep(const Box& view, Boundary boundary, TrapezoidList& tr
   return status_.size() % 2 == 0;
 }
 
-/// Writes down what is open right of slots `begin` .. `end` - 1: between the first and the second
-/// edge is inside, between the second and the third outside.
+/// Writes the open trapezoids right of slots `begin` .. `end` - 1: the area between the first and
+/// the second edge is inside, between the second and the third outside.
 void OpenTrapezoids::close_intervals(std::size_t begin, std::size_t end, std::int32_t bottom,
                                      const Box& view, TrapezoidList& trapezoids) const {
   for (std::size_t i = begin + begin % 2; i < end && i + 1 < status_.size(); i += 2) {
@@ -115,7 +115,7 @@ bool OpenTrapezoids::sweep_vertex(std::size_t begin, std::size_t end, Boundary b
   return last == position || is_apart(last - 1);
 }
 
-/// The place of the first edge that does not pass p on the left.
+/// The index of the first edge that does not pass p on the left.
 std::size_t OpenTrapezoids::locate(Point p) const {
   const auto is_left = [p](const Slot& slot) {
     return orientation(slot.edge.upper, slot.edge.lower, p) < 0;
@@ -126,7 +126,7 @@ std::size_t OpenTrapezoids::locate(Point p) const {
   return static_cast<std::size_t>(found - status_.begin());
 }
 
-/// Puts the starting edges in the place of `count` that end at p. False if two of them overlap.
+/// Replaces `count` edges that end at p by the starting edges. False if two of these overlap.
 bool OpenTrapezoids::replace(std::size_t position, std::size_t count, Point p) {
   const auto is_left = [p](const Edge& a, const Edge& b) {
     return orientation(p, a.lower, b.lower) < 0;
@@ -146,8 +146,8 @@ bool OpenTrapezoids::replace(std::size_t position, std::size_t count, Point p) {
   return true;
 }
 
-/// The edge in slot `left` and the one right of it do not meet below the sweep line, but for a
-/// common end.
+/// Whether the edge in slot `left` and the one right of it do not meet below the sweep line, except
+/// at a shared end.
 bool OpenTrapezoids::is_apart(std::size_t left) const {
   if (left + 1 >= status_.size()) return true;
   const Edge& west = status_[left].edge;

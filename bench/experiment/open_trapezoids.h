@@ -1,9 +1,9 @@
-// Trapezoidation by open trapezoids (Zalik and others 2003) for those who need the trapezoids alone
-// and no graph: a plane sweep that keeps the edges on the sweep line in order, and closes and opens
-// trapezoids as it passes vertices.
+// Trapezoidation by open trapezoids (Zalik and others 2003) for contestants that need only the
+// trapezoids and no graph: a plane sweep that keeps the edges on the sweep line in order, and
+// closes and opens trapezoids as it passes vertices.
 //
-// Small polygons have few edges on the sweep line, so these lie in an array. The sweep goes from
-// the top of the view to its bottom, and trapezoids that do not meet the view are not written down.
+// Small polygons have few edges on the sweep line, so these are stored in an array. The sweep goes
+// from the top of the view to its bottom, and trapezoids outside the view are not written.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,20 @@
 
 namespace trapeze::experiment {
 
-/// Belongs to one thread; memory is kept between uses.
+/// Used by one thread; memory is kept between uses.
 class OpenTrapezoids {
  public:
   enum class Boundary : std::uint8_t {
-    simple,     // edges meet at common vertices only; found out only where it gets in the way
-    uncertain,  // edges that come to lie side by side are tested, and noded if need be
+    simple,     // edges meet at shared vertices only; checked only where it matters
+    uncertain,  // edges that become neighbours are tested, and noded if necessary
   };
 
-  /// Appends the trapezoids, by even-odd, of rings `first` .. `last` - 1 that meet `view`, cut at
-  /// its top and bottom.
+  /// Appends the trapezoids, by the even-odd rule, of rings `first` .. `last` - 1 that intersect
+  /// `view`, clipped at its top and bottom.
   void tessellate(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view,
                   Boundary boundary, TrapezoidList& trapezoids);
 
-  /// Polygons that had to be noded so far.
+  /// The number of polygons that had to be noded so far.
   std::uint64_t noded() const { return noded_; }
 
  private:
@@ -38,12 +38,12 @@ class OpenTrapezoids {
   };
   struct Visit {
     std::uint64_t key;   // of the vertex in sweep order
-    std::uint32_t edge;  // that leaves it
+    std::uint32_t edge;  // starts at the vertex
     std::uint32_t edge_before;
   };
   struct Slot {
     Edge edge;
-    std::int32_t top;  // level at which what lies right of the edge was opened
+    std::int32_t top;  // level at which the area right of the edge was opened
   };
 
   void collect(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view);
@@ -61,7 +61,7 @@ class OpenTrapezoids {
 
   std::vector<Edge> edges_;
   std::vector<Visit> visits_;
-  std::vector<std::pair<double, Edge>> crossing_;  // the top of the view, and where
+  std::vector<std::pair<double, Edge>> crossing_;  // at the top of the view: x, edge
   std::vector<Slot> status_;
   std::vector<Edge> starting_;
   GraphBuilder builder_;

@@ -15,7 +15,8 @@
 namespace trapeze::experiment {
 namespace {
 
-// GEOS looks at every hole of a polygon together with every other: minutes for ten thousands.
+// GEOS compares every hole of a polygon with every other one: with tens of thousands this takes
+// minutes.
 constexpr std::size_t kMaxHolesForGeos = 2000;
 
 using Side = std::pair<Point, Point>;
@@ -24,7 +25,7 @@ struct PointOrder {
   bool operator()(Point a, Point b) const { return is_above(a, b); }
 };
 
-/// Vertices and sides of rings, to be looked up.
+/// Vertices and sides of rings, for look-up.
 class Boundary {
  public:
   explicit Boundary(const Rings& rings) {
@@ -66,7 +67,7 @@ double area_of_ring(std::span<const Point> ring) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Point a = ring[i];
     const Point b = ring[(i + 1) % ring.size()];
-    // Relative to the first vertex, so that small rings far from the origin keep their digits.
+    // Relative to the first vertex, so that small rings far from the origin keep their precision.
     doubled += (static_cast<double>(a.x) - ring[0].x) * (static_cast<double>(b.y) - ring[0].y) -
                (static_cast<double>(b.x) - ring[0].x) * (static_cast<double>(a.y) - ring[0].y);
   }
@@ -100,7 +101,7 @@ struct Areas {
   }
 };
 
-/// Of one view, and what it is measured from.
+/// The measurement of one view, with its input.
 struct Measurement {
   const ScaledView& view;
   Quality quality;
@@ -151,7 +152,7 @@ void measure_adapted(const TrapezoidalGraph& graph, const Rings& source, double 
   m.quality.invalid += is_valid ? 0 : 1;
 }
 
-/// One graph goes through all views that its box meets.
+/// A single graph is adapted to all views that intersect its box.
 void measure_graph(Rings rings, const Box& box, Topology topology,
                    std::vector<Measurement>& measurements) {
   const auto is_seen = [&box](const Measurement& m) { return m.view.view.box().intersects(box); };
@@ -186,7 +187,7 @@ void measure_graphs(const MapLayer& layer, Method method, Topology topology,
   }
 }
 
-/// One thread's use of GEOS.
+/// The GEOS context of one thread.
 class Geos {
  public:
   Geos() : handle_(GEOS_init_r()) {}
@@ -247,8 +248,8 @@ std::vector<Quality> measure_quality(Method method, Topology topology, const Map
   return all;
 }
 
-// A dropped vertex is at most as far from the boundary as from the chord that replaced it, if that
-// is there; so most vertices need not be compared with all sides.
+// A removed vertex is at most as far from the boundary as from the chord that replaced it, if that
+// exists; so most vertices need not be compared with all sides.
 double distance_between(const Rings& source, const Rings& simplified) {
   const Boundary boundary(simplified);
   double greatest = 0;

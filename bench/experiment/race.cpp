@@ -32,7 +32,7 @@ ViewCost median_by_total(std::vector<ViewCost> costs) {
 
 Race::Race(const Map& map, Topology topology, Screen& screen, std::span<const Method> methods)
     : map_(map), screen_(screen) {
-  cost_of_empty_view(map.layers.size(), screen);  // makes what all of them use
+  cost_of_empty_view(map.layers.size(), screen);  // creates what all of them use
   for (const Method method : methods) {
     if (is_possible(method, topology, map)) prepare(method, topology);
   }
@@ -56,7 +56,7 @@ void Race::run(std::span<const ScaledView> trip, const RaceOptions& options) {
   std::vector<Mask> masks;
   for (Runner& runner : runners_) {
     runner.costs.resize(trip.size());
-    runner.contestant->draw(trip.front(), masks);  // makes room, which no run should pay for
+    runner.contestant->draw(trip.front(), masks);  // allocates memory, which no run should include
   }
   double spent = 0;
   double last_round = 0;

@@ -1,4 +1,4 @@
-// All that the experiment found, as JSON.
+// All results of the experiment, as JSON.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 
 namespace trapeze::experiment {
 
-/// Of one method and treatment of topology, over the scales of Figure 7.
+/// For one method and setting of topology, over the scales of Figure 7.
 struct PictureErrors {
   Method method = Method::lifespans;
   Topology topology = Topology::strict;
   std::vector<PictureError> scales;
 };
 
-/// What was spent on a map, in seconds.
+/// The time spent on a map, in seconds.
 struct MapSeconds {
   double load = 0;
   double races = 0;
@@ -37,7 +37,7 @@ struct MapReport {
   std::vector<RaceResult> races;
   std::vector<PictureErrors> pictures;
   std::vector<Quality> quality;
-  std::vector<std::string> figures;  // names of files
+  std::vector<std::string> figures;  // file names
 };
 
 struct Report {
@@ -45,8 +45,8 @@ struct Report {
   std::string machine;
   std::string device;
   TripOptions options;
-  int runs = 0;                // at most
-  double seconds_of_runs = 0;  // beyond which none is begun
+  int runs = 0;                // maximum
+  double seconds_of_runs = 0;  // no run starts after that
   double seconds = 0;
   double growth_seconds = 0;
   std::vector<MapReport> maps;
@@ -56,7 +56,7 @@ struct Report {
 /// The processor, the number of cores, and the memory of this machine.
 std::string describe_machine();
 
-/// Writes it. Throws std::runtime_error if the file cannot be written.
+/// Writes the report. Throws std::runtime_error if the file cannot be written.
 void write_report(const Report& report, const std::string& path);
 
 /// A short table for the terminal.

@@ -58,7 +58,7 @@ std::size_t Resimplifying::shared_memory() const {
   return bytes;
 }
 
-// Stage by stage, and not polygon by polygon, so that nobody looks at a clock too often.
+// Stage by stage, not polygon by polygon, so that reading the clock takes no significant time.
 ViewCost Resimplifying::draw(const ScaledView& view, std::vector<Mask>& masks) {
   const Box box = is_whole_map_ ? map_.bounds : view.view.box();
   ViewCost cost;

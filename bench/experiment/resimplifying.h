@@ -1,5 +1,5 @@
-// The contestants that simplify and tessellate anew for every view: by Douglas and Peucker's
-// algorithm, or by BLG trees; into trapezoids, or into triangles.
+// The contestants that simplify and tessellate again for every view: with Douglas and Peucker's
+// algorithm or with BLG trees, into trapezoids or triangles.
 #pragma once
 
 #include <memory>
@@ -13,16 +13,16 @@
 
 namespace trapeze::experiment {
 
-/// Simplifies the polygons of a layer that meet a box. Belongs to one thread.
+/// Simplifies the polygons of a layer that intersect a box. Used by one thread.
 class LayerSimplifier {
  public:
-  /// `polygons` must outlive this.
+  /// `polygons` must outlive this object.
   LayerSimplifier(const PolygonSet& polygons, std::unique_ptr<RingSimplifier> rings,
                   Topology topology)
       : polygons_(polygons), rings_(std::move(rings)), topology_(topology) {}
 
-  /// Replaces `simplified`. Rings that are left with fewer than three vertices are left out, and
-  /// polygons without a shell.
+  /// Replaces `simplified`. Leaves out rings with fewer than three remaining vertices, and polygons
+  /// without a shell.
   void simplify(const Box& box, double epsilon, SimplifiedPolygons& simplified);
 
   const TopologyKeeper& keeper() const { return keeper_; }
@@ -52,10 +52,10 @@ class Resimplifying final : public Contestant {
 
   const Map& map_;
   const Topology topology_;
-  const bool is_whole_map_;  // nothing is left out because it lies beyond the view
+  const bool is_whole_map_;  // includes polygons outside the view
   std::vector<LayerSimplifier> layers_;
   OpenTrapezoids open_trapezoids_;
-  std::unique_ptr<Triangulation> triangulation_;  // null for those who draw trapezoids
+  std::unique_ptr<Triangulation> triangulation_;  // null for contestants that draw trapezoids
   DeviceTrapezoids device_;
   std::vector<SimplifiedPolygons> simplified_;  // by layer
   TrapezoidList trapezoids_;                    // of all layers

@@ -62,7 +62,7 @@ void DeviceTrapezoids::send(const TrapezoidList& trapezoids) {
   for (std::size_t first = 0; first < trapezoids.size(); first += chunk_size()) {
     const std::size_t count = std::min<std::size_t>(trapezoids.size() - first, chunk_size());
     gl.BindBuffer(GL_TEXTURE_BUFFER, buffer(first));
-    // Every view ends with reading it back, so the device is done with what was there.
+    // Every view ends with reading it back, so the device no longer uses the old contents.
     const std::size_t bytes = count * sizeof(TrapezoidRecord);
     void* room = gl.MapBufferRange(
         GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes),

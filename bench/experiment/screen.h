@@ -19,20 +19,20 @@ namespace trapeze::experiment {
 constexpr int kScreenWidth = 1600;   // pixels
 constexpr int kScreenHeight = 1200;  // pixels
 
-/// What is drawn of one layer.
+/// The trapezoids to draw of one layer.
 using Ranges = std::vector<TrapezoidRange>;
 
-/// One GlRenderer on the EGL device that works first. Belongs to one thread.
+/// One GlRenderer on the first EGL device that works. Used by one thread.
 class Screen {
  public:
-  /// `device` as in RendererOptions. Throws std::runtime_error if there is no EGL device.
+  /// `device` is as in RendererOptions. Throws std::runtime_error if there is no EGL device.
   explicit Screen(const std::string& device = {});
 
   MaskRenderer& renderer() { return *renderer_; }
   GlMeshStore& store() { return *store_; }
   GlContext& context() { return renderer_->context(); }
 
-  /// Sends a mesh that does not change, once for all.
+  /// Sends an immutable mesh, once.
   void send(const MeshView& mesh);
   void forget(std::uint64_t mesh_id);
 
@@ -47,21 +47,21 @@ class Screen {
   std::vector<MaskTask> tasks_;
 };
 
-/// Room on the device for the trapezoids of a map that each view writes anew. The room is kept
-/// between views, and written to directly.
+/// Memory on the device for the trapezoids of a map that each view writes again. It is kept between
+/// views, and written directly.
 class DeviceTrapezoids {
  public:
-  /// `screen` must outlive this.
+  /// `screen` must outlive this object.
   explicit DeviceTrapezoids(Screen& screen) : screen_(screen), mesh_id_(new_mesh_id()) {}
   ~DeviceTrapezoids() { screen_.forget(mesh_id_); }
   DeviceTrapezoids(const DeviceTrapezoids&) = delete;
   DeviceTrapezoids& operator=(const DeviceTrapezoids&) = delete;
 
-  /// Writes the trapezoids over what was there, and waits until the device has them.
+  /// Overwrites the previous trapezoids, and waits until the device has the new ones.
   void send(const TrapezoidList& trapezoids);
 
-  /// The buffer of the chunk that begins with trapezoid `first`, for whoever fills it in on the
-  /// device. A context of the screen is current.
+  /// The buffer of the chunk that begins with trapezoid `first`, to be filled on the device. A
+  /// context of the screen must be current.
   GLuint buffer(std::size_t first);
   std::uint32_t chunk_size() const { return screen_.store().chunk_size(); }
 

@@ -1,4 +1,4 @@
-// Polygons as they are after simplification.
+// Simplified polygons.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace trapeze::experiment {
 
-/// One after another, those that have gone left out.
+/// Consecutive polygons, without those that were removed.
 struct SimplifiedPolygons {
   Rings rings;
   std::vector<std::uint32_t> ends;    // polygon i is rings ends[i - 1] .. ends[i] - 1
-  std::vector<std::uint32_t> source;  // by polygon: its number in the PolygonSet
+  std::vector<std::uint32_t> source;  // by polygon: its index in the PolygonSet
 
   void clear() {
     rings.clear();

@@ -8,7 +8,7 @@
 namespace trapeze::experiment {
 namespace {
 
-// So few are looked at one by one faster than they are put into a grid.
+// Examining so few one by one is faster than putting them into a grid.
 constexpr std::size_t kFew = 24;
 
 Point vertex(std::span<const Point> ring, std::uint32_t i) {
@@ -20,15 +20,14 @@ bool is_on_segment(Point p, Point a, Point b) {
          std::min(a.y, b.y) <= p.y && p.y <= std::max(a.y, b.y);
 }
 
-/// Whether the edge meets the half line that runs from p to the right; each upper end belongs to
-/// it.
+/// Whether the edge meets the ray from p to the right; the upper end of an edge belongs to it.
 bool is_right_of(Point p, Point a, Point b) {
   if ((a.y <= p.y) == (b.y <= p.y)) return false;
   const std::int64_t side = orientation(a, b, p);
   return a.y < b.y ? side > 0 : side < 0;
 }
 
-/// Even-odd, with the border.
+/// By the even-odd rule, including the border.
 bool is_enclosed(Point p, std::span<const Point> ring, const Chain& chain) {
   Point from = vertex(ring, chain.end);
   bool is_inside = false;
@@ -66,7 +65,7 @@ void PointGrid::assign(std::span<const Point> points) {
   const std::int64_t height = std::int64_t{bounds_.max_y} - bounds_.min_y + 1;
   const double area = static_cast<double>(width) * static_cast<double>(height);
   const double share = std::sqrt(2 * area / static_cast<double>(points.size()));
-  // A polygon that is as good as a line must not have more cells than points.
+  // A polygon that is almost a line must not have more cells than points.
   const auto longest = static_cast<double>(std::max(width, height));
   side_ = static_cast<std::int64_t>(
       std::ceil(std::max(share, 2 * longest / static_cast<double>(points.size()))));
@@ -80,7 +79,8 @@ void PointGrid::assign(std::span<const Point> points) {
     ++begins_[cell_of_[i] + 1];
   }
   for (std::size_t c = 1; c < begins_.size(); ++c) begins_[c] += begins_[c - 1];
-  // Each begin runs to the end of its cell, which is the begin of the next one; then all move on.
+  // Each begin advances to the end of its cell, which is the begin of the next one; then all are
+  // shifted.
   for (std::size_t i = 0; i < points.size(); ++i) points_[begins_[cell_of_[i]]++] = points[i];
   std::rotate(begins_.begin(), begins_.end() - 1, begins_.end());
   begins_[0] = 0;
@@ -101,8 +101,8 @@ void TopologyKeeper::keep(const PolygonSet& polygons, std::size_t polygon,
   const std::uint32_t first_ring = polygons.first_ring(polygon);
   collect_kept(polygons, first_ring, chains);
   split_inconsistent(polygons, first_ring, simplifier, all_kept_, chains);
-  // What is split keeps vertices that may lie in what other chains enclose; only these are new to
-  // chains that have been found consistent.
+  // Split chains keep vertices that may be in the area enclosed by other chains; only these are new
+  // to chains already found consistent.
   while (!newly_kept_.empty()) {
     all_kept_.points.insert(all_kept_.points.end(), newly_kept_.begin(), newly_kept_.end());
     all_kept_.is_indexed = false;
@@ -144,7 +144,7 @@ void TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_
       while (!pending_.empty()) {
         const auto [chain, is_part] = pending_.back();
         pending_.pop_back();
-        // Parts may enclose what the whole chain did not.
+        // Parts may enclose area that the whole chain did not.
         if (!chain.has_dropped() || is_consistent(points, chain, is_part ? all_kept_ : kept)) {
           next_.chains.push_back(chain);
           continue;
@@ -164,7 +164,8 @@ void TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_
   if (!newly_kept_.empty()) std::swap(chains, next_);
 }
 
-// Everything that the chain and its chord enclose is as near to the chord as the farthest vertex.
+// The whole area enclosed by the chain and its chord is at most as far from the chord as the
+// farthest vertex.
 bool TopologyKeeper::is_consistent(std::span<const Point> ring, const Chain& chain,
                                    KeptVertices& kept) const {
   if (!kept.is_indexed) kept.index();

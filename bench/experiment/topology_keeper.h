@@ -1,11 +1,11 @@
 // Topological consistency for simplified polygons after Corcoran, Mooney and Winstanley (2011): a
-// vertex may be dropped if no vertex that is kept comes to lie on the other side of the boundary.
+// vertex may be removed if no remaining vertex ends up on the other side of the boundary.
 //
-// What a chain and its chord enclose changes sides. So a chain is consistent if no kept vertex of
-// its polygon lies in there or on its border; otherwise it is split at its farthest vertex, until
-// all are. Only vertices in the bounding region of the chain are looked at, found in a grid. Two
-// chords then never cross: the ends of one are outside of what the other chain encloses, so it
-// would have to cross that chain as often as its chord.
+// The area enclosed by a chain and its chord changes sides. So a chain is consistent if no
+// remaining vertex of its polygon is in that area or on its border; otherwise it is split at its
+// farthest vertex, until all chains are consistent. Only vertices in the bounding box of the chain
+// are examined, which are found in a grid. Two chords then never cross: the ends of one are outside
+// the area enclosed by the other chain, so it would have to cross that chain as often as its chord.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace trapeze::experiment {
 
-/// Points in square cells, about two to a cell. Memory is kept between uses.
+/// Points in square cells, about two per cell. Memory is kept between uses.
 class PointGrid {
  public:
   void assign(std::span<const Point> points);
@@ -29,7 +29,7 @@ class PointGrid {
     const std::int64_t last_column = column(box.max_x);
     const std::int64_t last_row = row(box.max_y);
     for (std::int64_t y = row(box.min_y); y <= last_row; ++y) {
-      // The cells of a row follow each other.
+      // The cells of a row are consecutive.
       const std::uint32_t begin = begins_[static_cast<std::size_t>(y * columns_ + first_column)];
       const std::uint32_t end = begins_[static_cast<std::size_t>(y * columns_ + last_column) + 1];
       for (std::uint32_t i = begin; i < end; ++i) {
@@ -46,20 +46,20 @@ class PointGrid {
   Box bounds_;
   std::int64_t columns_ = 1;
   std::int64_t rows_ = 1;
-  std::int64_t side_ = 1;  // of a cell of this grid, in those of the world's
+  std::int64_t side_ = 1;  // of a cell of this grid, in cells of the world's grid
   std::vector<std::uint32_t> begins_;
   std::vector<std::uint32_t> cell_of_;
   std::vector<Point> points_;
 };
 
-/// Belongs to one thread.
+/// Used by one thread.
 class TopologyKeeper {
  public:
   /// Splits chains of polygon `polygon` until all are consistent.
   void keep(const PolygonSet& polygons, std::size_t polygon, RingSimplifier& simplifier,
             PolygonChains& chains);
 
-  /// Chains that had to be split so far.
+  /// The number of chains that had to be split so far.
   std::uint64_t splits() const { return splits_; }
 
  private:
@@ -75,16 +75,17 @@ class TopologyKeeper {
 
   void collect_kept(const PolygonSet& polygons, std::uint32_t first_ring,
                     const PolygonChains& chains);
-  /// Tests all chains against `kept`, and those that come of splitting against all.
+  /// Tests all chains against `kept`, and those created by splitting against all remaining
+  /// vertices.
   void split_inconsistent(const PolygonSet& polygons, std::uint32_t first_ring,
                           RingSimplifier& simplifier, KeptVertices& kept, PolygonChains& chains);
   bool is_consistent(std::span<const Point> ring, const Chain& chain, KeptVertices& kept) const;
 
   KeptVertices all_kept_;
-  KeptVertices last_kept_;         // by the last round of splitting
-  std::vector<Point> newly_kept_;  // by this one
+  KeptVertices last_kept_;         // by the previous round of splitting
+  std::vector<Point> newly_kept_;  // by the current round
   PolygonChains next_;
-  std::vector<std::pair<Chain, bool>> pending_;  // and whether it comes of splitting
+  std::vector<std::pair<Chain, bool>> pending_;  // and whether it was created by splitting
   std::uint64_t splits_ = 0;
 };
 

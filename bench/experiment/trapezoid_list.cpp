@@ -23,7 +23,7 @@ void TrapezoidList::append_triangle(std::array<Point, 3> corners, const Box& vie
   const auto [top, middle, bottom] = corners;
   const std::int64_t side = orientation(top, bottom, middle);
   const auto append_part = [&, a = top, b = bottom](Point upper, Point lower) {
-    // The middle vertex lies east of the long side where the orientation is negative.
+    // The middle vertex is east of the long side if the orientation is negative.
     if (side < 0) {
       append({upper.y, lower.y, a, b, upper, lower}, view);
     } else {

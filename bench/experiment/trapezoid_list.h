@@ -1,4 +1,4 @@
-// Trapezoids as the device keeps them (see render/gl/gl_mesh_store.h).
+// Trapezoids in the device's format (see render/gl/gl_mesh_store.h).
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct TrapezoidRecord {
 };
 static_assert(sizeof(TrapezoidRecord) == GlMeshStore::kTexelsPerTrapezoid * sizeof(Point));
 
-/// Where the straight line between two points that are not level runs in x; exact at the lower one.
+/// The x of the line through two points of different y, at that y; exact at the lower point.
 double x_at(Point upper, Point lower, std::int32_t y);
 
 /// Memory is kept between uses.
@@ -31,9 +31,9 @@ struct TrapezoidList {
 
   std::size_t size() const { return records.size(); }
   void cut(std::size_t count) { records.resize(count); }
-  /// Unless it is without height, or beyond `view`.
+  /// Appends the trapezoid unless it has no height or is outside `view`.
   void append(const TrapezoidRecord& trapezoid, const Box& view);
-  /// A triangle: its parts above and below the level of the middle vertex.
+  /// Appends a triangle: its parts above and below the level of the middle vertex.
   void append_triangle(std::array<Point, 3> corners, const Box& view);
 };
 

@@ -1,4 +1,4 @@
-// Constrained Delaunay triangulation by CGAL, in the place of trapezoids.
+// Constrained Delaunay triangulation by CGAL, instead of trapezoids.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@ namespace trapeze::experiment {
 /// Whether this program was built with CGAL.
 bool has_triangulation();
 
-/// Belongs to one thread.
+/// Used by one thread.
 class Triangulation {
  public:
   /// Throws std::runtime_error without CGAL.
   Triangulation();
   ~Triangulation();
 
-  /// Appends the triangles that lie inside, by even-odd, of rings `first` .. `last` - 1 and that
-  /// meet `view`; each is cut at the level of its middle vertex into two trapezoids. No two edges
-  /// cross.
+  /// Appends the triangles, by the even-odd rule, of rings `first` .. `last` - 1 that are inside
+  /// and intersect `view`; each is split at the level of its middle vertex into two trapezoids.
+  /// Edges must not cross.
   void triangulate(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view,
                    TrapezoidList& trapezoids);
 

@@ -75,7 +75,7 @@ void Triangulation::triangulate(const Rings& rings, std::uint32_t first, std::ui
     for (const Point p : state.rings[r]) state.points.emplace_back(p.x, p.y);
     state.cdt.insert_constraint(state.points.begin(), state.points.end(), true);
   }
-  if (state.cdt.dimension() < 2) return;  // short cuts have left nothing but a line
+  if (state.cdt.dimension() < 2) return;  // after the short cuts, only a line is left
   state.find_inside();
   for (const auto face : state.cdt.finite_face_handles()) {
     if (face->info() != Place::inside) continue;

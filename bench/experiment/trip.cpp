@@ -11,7 +11,7 @@
 namespace trapeze::experiment {
 namespace {
 
-// Shares of the smallest scale; those of Figure 7 are among them.
+// Shares of the smallest scale, including those of Figure 7.
 constexpr double kScales[] = {1.0,        142.0 / 250, 80.0 / 250, 50.0 / 250, 29.0 / 250,
                               15.0 / 250, 8.5 / 250,   5.0 / 250,  3.0 / 250};
 constexpr int kViewsPerScale = 4;
@@ -21,7 +21,7 @@ Point middle_of(const Box& box) {
           static_cast<std::int32_t>((std::int64_t{box.min_y} + box.max_y) / 2)};
 }
 
-/// The middle part of a box, half as wide and high.
+/// The central part of a box, half as wide and high.
 Box middle_part(const Box& box) {
   const auto quarter = [](std::int64_t min, std::int64_t max) {
     return static_cast<std::int32_t>((max - min) / 4);
@@ -54,8 +54,8 @@ class Traveller {
                        options_.simplify_pixels);
   }
 
-  /// The centre, if there is no vertex in the box. Not by a distribution: those differ between
-  /// standard libraries.
+  /// A random vertex in the box, or its centre if there is none. Uses no distribution: those differ
+  /// between standard libraries.
   Point some_vertex(const Box& box) {
     std::vector<Point> there;
     for (const MapLayer& layer : map_.layers) {

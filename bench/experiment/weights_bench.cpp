@@ -1,11 +1,11 @@
-// What the rules by which vertices are weighed do to shapes.
+// Compares the effect of the rules for vertex weights on shapes.
 //
 //   TRAPEZE_DATA=folder weights_bench
 //
-// Every feature of a layer is simplified by each rule, with topology, until as many vertices are
-// left of all of them as Douglas-Peucker leaves at so many pixels; the tolerances of the rules are
-// not alike, their maps with equally many vertices are. Of what is left: how many corners are at
-// right angles, areas, and distances from what was there.
+// Every feature of a layer is simplified by each rule, with topology, until the total number of
+// remaining vertices is the same as with Douglas-Peucker at a given number of pixels: tolerances
+// are not comparable between rules, but maps with equal numbers of vertices are. For the result,
+// reports how many corners are right angles, areas, and distances from the original.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -68,7 +68,7 @@ std::size_t vertices_at(std::vector<Feature>& features, double epsilon) {
   return vertices;
 }
 
-/// The greatest tolerance, to a thousandth, that leaves at least so many vertices.
+/// The greatest tolerance, to a thousandth, that leaves at least that many vertices.
 double tolerance_leaving(std::vector<Feature>& features, std::size_t vertices) {
   double least = 0.5;  // binary logarithms
   double greatest = 31;

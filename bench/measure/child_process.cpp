@@ -40,12 +40,12 @@ struct ProcessStat {
   double cpu_seconds = 0;
 };
 
-/// Nothing but zeros for a process that has ended.
+/// All zeros for a process that has ended.
 ProcessStat read_stat(const std::filesystem::path& folder) {
   std::ifstream file(folder / "stat");
   std::string text;
   std::getline(file, text);
-  const std::size_t name_end = text.rfind(')');  // the name may hold anything
+  const std::size_t name_end = text.rfind(')');  // the name may contain anything
   if (name_end == std::string::npos) return {};
   std::istringstream fields(text.substr(name_end + 1));
   ProcessStat stat;
@@ -76,7 +76,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std:
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("cannot start " + arguments.front());
   if (pid_ == 0) become(arguments, log, environment);
-  setpgid(pid_, pid_);  // here too: whoever comes first
+  setpgid(pid_, pid_);  // here and in the child: whichever comes first
 }
 
 ChildProcess::~ChildProcess() {
@@ -84,7 +84,7 @@ ChildProcess::~ChildProcess() {
   for (int tries = 0; tries < 500 && is_running(); ++tries) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  kill(-pid_, SIGKILL);  // and those of its children that it has left behind
+  kill(-pid_, SIGKILL);  // including orphaned children
   wait();
 }
 

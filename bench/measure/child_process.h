@@ -1,4 +1,4 @@
-// Programs that a benchmark starts beside itself, and ends.
+// Programs that a benchmark starts and ends.
 #pragma once
 
 #include <sys/types.h>
@@ -9,11 +9,11 @@
 
 namespace trapeze {
 
-/// A running program with all that it starts itself. It ends with this object, and with the process
-/// that made it.
+/// A running program with all processes it starts. It ends with this object, and with the process
+/// that created it.
 class ChildProcess {
  public:
-  /// `arguments[0]` is the program, looked for in PATH; what it writes goes to the file `log`.
+  /// `arguments[0]` is the program, which is searched in PATH; its output goes to the file `log`.
   /// `environment` adds NAME=VALUE. Throws std::runtime_error if it cannot be started.
   ChildProcess(const std::vector<std::string>& arguments, const std::string& log,
                const std::vector<std::string>& environment = {});
@@ -22,9 +22,9 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   bool is_running();
-  /// Seconds of processor time that it and its running children have used until now.
+  /// Seconds of processor time that it and its running children have used so far.
   double cpu_seconds() const;
-  /// Waits for its end; the exit status, or 128 and the signal.
+  /// Waits for its end; returns the exit status, or 128 plus the signal.
   int wait();
 
  private:
@@ -36,7 +36,7 @@ class ChildProcess {
 /// Runs a program to its end. Throws std::runtime_error with its command if it fails.
 void run_to_end(const std::vector<std::string>& arguments, const std::string& log);
 
-/// A TCP port of this machine that nothing listens on just now.
+/// A TCP port of this machine that is currently not in use.
 std::uint16_t free_port();
 
 }  // namespace trapeze

@@ -1,12 +1,12 @@
-// Compares the figures of a run with stored ones, and tells what got worse.
+// Compares the figures of a run with stored ones, and reports which got worse.
 //
-//   compare_figures STORED RESULT ...           compares; what it finds is no failure
-//   compare_figures --store STORED RESULT ...   stores what the results say instead
+//   compare_figures STORED RESULT ...           compares; worse figures are not a failure
+//   compare_figures --store STORED RESULT ...   stores the results instead
 //
-// A RESULT is a JSON file of Google Benchmark, of which processor times count, the shortest of
+// A RESULT is a JSON file of Google Benchmark, of which processor times are used, the shortest of
 // repeated runs, or of one of our own benchmarks. A figure has got worse if it is more than
-// --factor times as bad as the stored one; on another machine than that of the stored figures, the
-// factors say little.
+// --factor times as bad as the stored one; if the stored figures are from another machine, the
+// factors mean little.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -40,7 +40,7 @@ Json read_json(const std::string& path) {
   }
 }
 
-/// What is compared of a figure, if it is there.
+/// The values of a figure that are compared, if present.
 constexpr const char* kKept[] = {"tiles_per_second", "cpu_ms_per_tile",      "p50_ms",
                                  "p99_ms",           "cached tiles, cpu us", "304, cpu us",
                                  "seconds to ready"};

@@ -1,4 +1,4 @@
-// What benchmarks of whole servers found, as a table to read and as JSON to keep.
+// Results of benchmarks of whole servers, as a table for people and as JSON for storage.
 #pragma once
 
 #include <map>
@@ -10,13 +10,13 @@ namespace trapeze {
 struct TileTime {
   int zoom = 0;
   double ms = 0;
-  double bytes = 0;  // of the picture; 0: not counted
+  double bytes = 0;  // of the image; 0: not counted
 };
 
 /// One run over a list of tiles.
 struct TileRun {
-  double seconds = 0;      // of wall time
-  double cpu_seconds = 0;  // of processor time, of those who drew
+  double seconds = 0;      // wall time
+  double cpu_seconds = 0;  // processor time of the drawing processes
   std::vector<TileTime> tiles;
 };
 
@@ -30,10 +30,10 @@ struct Percentiles {
 
 Percentiles percentiles_of(std::vector<double> values);
 
-/// The figures of one measurement: of several runs over the same tiles, or of single values.
+/// The figures of one measurement: several runs over the same tiles, or single values.
 class Figure {
  public:
-  /// A name such as "malta/trapeze-egl/cold".
+  /// The name is for example "malta/trapeze-egl/cold".
   explicit Figure(std::string name) : name_(std::move(name)) {}
 
   void add(TileRun run) { runs_.push_back(std::move(run)); }
@@ -45,12 +45,12 @@ class Figure {
   bool has_runs() const { return !runs_.empty(); }
   const std::map<std::string, double>& values() const { return values_; }
 
-  /// The middle one of the runs, which others who use the machine meanwhile disturb least.
+  /// Of the median run, which is least affected by other load on the machine.
   double tiles_per_second() const;
   double best_tiles_per_second() const;
-  /// Processor time of the run that took least, by tile.
+  /// Processor time per tile of the run that used the least.
   double cpu_ms_per_tile() const;
-  /// In the mean.
+  /// The mean.
   double bytes_per_tile() const;
   /// Over the tiles of all runs.
   Percentiles percentiles() const;
@@ -63,13 +63,13 @@ class Figure {
   std::map<std::string, double> values_;
 };
 
-/// The table's head and a line for each figure, to standard output.
+/// Print the head of the table, and a line for each figure, to standard output.
 void print_table_head();
 void print_line(const Figure& figure);
 void print_zooms(const Figure& figure);
 
-/// Writes the figures with the machine, the time, the commit (of the variable TRAPEZE_COMMIT) and
-/// the command; makes the folder. Throws std::runtime_error if the file cannot be written.
+/// Writes the figures with the machine, the time, the commit (from the variable TRAPEZE_COMMIT) and
+/// the command; creates the folder. Throws std::runtime_error if the file cannot be written.
 void write_figures(const std::vector<Figure>& figures, const std::string& command,
                    const std::string& file);
 

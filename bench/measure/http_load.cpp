@@ -45,7 +45,7 @@ class Descriptor {
 };
 
 struct Head {
-  std::size_t size = 0;  // with the empty line
+  std::size_t size = 0;  // including the empty line
   std::uint16_t status = 0;
   std::size_t length = 0;  // of the body
   bool from_cache = false;
@@ -126,7 +126,7 @@ class Connection {
     }
   }
 
-  /// Reads what is there and hands every complete answer to `take(exchange, head, body)`.
+  /// Reads the available data and passes every complete response to `take(exchange, head, body)`.
   template <typename Take>
   void receive(const Take& take) {
     std::array<char, 65536> block;
@@ -149,7 +149,7 @@ class Connection {
     Clock::time_point when;
   };
 
-  /// How many bytes of the text were complete answers.
+  /// Returns how many bytes of the text were complete responses.
   template <typename Take>
   std::size_t take_answers(std::string_view text, Clock::time_point now, const Take& take) {
     std::size_t done = 0;
@@ -173,10 +173,10 @@ class Connection {
 
   Descriptor socket_;
   std::deque<Asked> asked_;
-  std::string received_;  // the beginning of an answer
+  std::string received_;  // the beginning of a response
 };
 
-/// Hands out the numbers of the requests until there are enough.
+/// Hands out the indexes of the requests until the end.
 class Schedule {
  public:
   Schedule(std::size_t count, double seconds) : count_(count), seconds_(seconds) {}

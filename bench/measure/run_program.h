@@ -1,4 +1,4 @@
-// The way in and out of a benchmark.
+// The main function of benchmarks.
 #pragma once
 
 #include <cstdio>
@@ -6,7 +6,8 @@
 
 namespace trapeze {
 
-/// The exit status of run(argc, argv); 1 if it throws, which is told under the program's name.
+/// Returns the exit status of run(argc, argv); 1 if it throws, with a message under the program's
+/// name.
 inline int run_program(const char* name, int (*run)(int, char**), int argc, char** argv) {
   try {
     return run(argc, argv);

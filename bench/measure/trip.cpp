@@ -26,7 +26,7 @@ struct NamedTrip {
 constexpr NamedTrip kTrips[] = {
     {"malta", malta_trip}, {"shenzhen_z0-9", shenzhen_from_afar}, {"usa48", usa48_trip}};
 
-/// Different tiles in the order in which they were first added.
+/// Distinct tiles in the order in which they were first added.
 class TileList {
  public:
   void add(const TileId& tile) {
@@ -44,7 +44,7 @@ std::int64_t tile_number(std::int64_t cell, int z) {
   return (cell - kGridMin) >> (kGridBits - z);
 }
 
-/// Calls `add` for the tiles that hold a part of the rectangle, in cells.
+/// Calls `add` for the tiles that contain a part of the rectangle, in cells.
 template <typename Add>
 void each_tile(int z, std::int64_t min_x, std::int64_t min_y, std::int64_t max_x,
                std::int64_t max_y, const Add& add) {
@@ -66,7 +66,7 @@ void append_view(Point middle, int z, Screen screen, std::vector<TileId>& tiles)
             middle.y + half_height - 1, [&](const TileId& tile) { tiles.push_back(tile); });
 }
 
-/// The distributions of the standard library differ from one to the next.
+/// Not a distribution of the standard library: these differ between libraries.
 Point pick(const std::vector<Point>& points, std::mt19937& random) {
   return points[random() % points.size()];
 }
@@ -120,7 +120,7 @@ std::vector<TileId> tiles_at_vertices(const Places& places, int min_zoom, int ma
   TileList tiles;
   for (int z = min_zoom; z <= max_zoom; ++z) {
     const std::size_t enough = tiles.size() + count;
-    // At low zooms there are not as many: then ever the same ones are found.
+    // Low zooms do not have as many tiles: the same ones are found again and again.
     for (std::size_t tries = 0; tries < 4 * count && tiles.size() < enough; ++tries) {
       const Point p = pick(places.vertices, random);
       each_tile(z, p.x, p.y, p.x, p.y, [&](const TileId& tile) { tiles.add(tile); });

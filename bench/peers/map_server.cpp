@@ -32,14 +32,14 @@ std::string write_lighttpd_config(const std::string& folder, std::uint16_t port)
        << "  \"bin-path\" => \"/usr/bin/mapserv\",\n"
        << "  \"max-procs\" => " << std::thread::hardware_concurrency() << ",\n"
        << "  \"check-local\" => \"disable\",\n"
-       << "  \"kill-signal\" => 9,\n"  // mapserv does not heed any other while it waits
+       << "  \"kill-signal\" => 9,\n"  // mapserv ignores any other signal while it waits
        << "  \"bin-environment\" => (\"MAPSERVER_CONFIG_FILE\" => \"" << mapserver_config
        << "\")\n)))\n";
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
   return path;
 }
 
-/// MapServer takes extents from the middle of the first pixel to that of the last.
+/// MapServer measures extents from the centre of the first pixel to that of the last.
 std::string extent_of(const TileId& tile) {
   const double side = std::ldexp(2 * kMercatorHalfSide, -tile.z);
   const double half_pixel = side / kTileSide / 2;
@@ -67,7 +67,7 @@ void MapServer::await_answer() {
   for (int tries = 0; tries < 1000 && process_.is_running(); ++tries) {
     try {
       if (load_http(port_, request, {.connections = 1}).exchanges.front().is_png) return;
-    } catch (const std::exception&) {  // it does not listen yet
+    } catch (const std::exception&) {  // not listening yet
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

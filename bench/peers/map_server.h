@@ -1,4 +1,4 @@
-// MapServer over HTTP: lighttpd, and behind it one FastCGI process of mapserv for every core.
+// MapServer over HTTP: lighttpd, with one FastCGI process of mapserv per core behind it.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,14 @@ namespace trapeze {
 
 class MapServer {
  public:
-  /// Needs lighttpd and mapserv. Returns when it answers; throws std::runtime_error if it does not.
+  /// Needs lighttpd and mapserv. Returns when it responds; throws std::runtime_error if it does
+  /// not.
   explicit MapServer(const std::string& map_file);
 
   std::uint16_t port() const { return port_; }
   /// Requests for the tiles of the trip, with all layers of the map.
   std::vector<std::string> requests(const Trip& trip) const;
-  /// Of lighttpd and of all mapserv.
+  /// Of lighttpd and all mapserv processes.
   double cpu_seconds() const { return process_.cpu_seconds(); }
 
  private:

@@ -1,12 +1,12 @@
-// Draws tiles with Mapnik in this process, as fast as it can: one thread a core, each with a map of
-// its own, every tile drawn and encoded from nothing.
+// Draws tiles with Mapnik in this process, as fast as possible: one thread per core, each with its
+// own map; every tile is drawn and encoded from scratch.
 //
 //   mapnik_trip MAP TILES RESULT [THREADS [FORMAT [PICTURES]]]
 //
-// MAP is a map of Mapnik in XML, in metres of EPSG:3857; TILES has lines of z, x and y. RESULT gets
-// the seconds of wall and of processor time, then for every tile its zoom and its milliseconds.
-// FORMAT is what Mapnik calls a format: png8 if not given. With PICTURES, a folder, every tile is
-// also written there as z_x_y.png.
+// MAP is a Mapnik map in XML, in metres of EPSG:3857; TILES has lines of z, x and y. RESULT gets
+// the seconds of wall and of processor time, then the zoom and the milliseconds of every tile.
+// FORMAT is a Mapnik format name, png8 by default. With PICTURES, a folder, every tile is also
+// written there as z_x_y.png.
 #include <sys/resource.h>
 
 #include <algorithm>

@@ -67,7 +67,7 @@ void write_shapes(const Trip& trip, const std::string& folder) {
   const std::string log = folder + "/shapes.log";
   for (const TripLayer& layer : trip.layers) {
     const std::string shape = shape_of(layer, folder);
-    // Turning rings around takes minutes for a polygon with many, and nobody here looks at it.
+    // Reversing rings takes minutes for a polygon with many, and no program here needs it.
     run_to_end({"ogr2ogr", "--config", "SHAPE_REWIND_ON_WRITE", "NO", "-f", "ESRI Shapefile",
                 "-t_srs", "EPSG:3857", "-select", "", shape, layer.file},
                log);

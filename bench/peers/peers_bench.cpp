@@ -1,14 +1,14 @@
-// Trapeze beside Mapnik and MapServer: the same tiles of the same polygons in the same colours, in
-// one run, nothing cached, all cores for whoever is at work.
+// Trapeze compared with Mapnik and MapServer: the same tiles of the same polygons in the same
+// colours, in one run, nothing cached, with all cores for the program being measured.
 //
 //   TRAPEZE_DATA=folder peers_bench                  all trips
 //   peers_bench --trip malta --rounds 1              one of them, once
 //   peers_bench --layers --no-simplify --rounds 1    every layer of the folder by itself
 //   peers_bench --pictures out/bench/pictures        pictures of all three side by side, no times
 //
-// Mapnik draws within its process (mapnik_trip), without HTTP; Trapeze and MapServer are asked over
-// HTTP by the same client. "-simplify" is what Mapnik and MapServer can do themselves to that end.
-// What is not installed is left out, with a message.
+// Mapnik draws within its process (mapnik_trip), without HTTP; Trapeze and MapServer are measured
+// over HTTP with the same client. "-simplify" uses the simplification that Mapnik and MapServer
+// offer. Programs that are not installed are left out, with a message.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -39,17 +39,17 @@ struct Options {
   std::vector<std::string> trips = trip_names();
   std::string program = built_trapeze();
   int rounds = 3;
-  bool has_simplified = true;  // also the peers simplifying
+  bool has_simplified = true;  // also the peers with simplification
   int connections = 16;
   std::string pictures;
   std::string json = "out/bench/peers.json";
 };
 
-/// Somebody who draws a trip, and how it went.
+/// A program that draws a trip, and its result.
 struct Contestant {
   std::function<TileRun(const Trip&)> draw;
   Figure figure;
-  bool is_slow = false;  // its figure is that of some of the tiles, or of none
+  bool is_slow = false;  // its figure covers some of the tiles, or none
 };
 
 std::string mapnik_program() {
@@ -77,7 +77,7 @@ TileRun read_mapnik_result(const std::string& path) {
   return run;
 }
 
-/// Draws a trip in every way there is, from one set of files.
+/// Draws a trip in all available ways, from one set of files.
 class Contest {
  public:
   Contest(Trip trip, const Options& options) : trip_(std::move(trip)), options_(options) {
@@ -101,14 +101,15 @@ class Contest {
     }
   }
 
-  /// A figure for each, and how many times as fast as each peer Trapeze is: in tiles a second, and
-  /// by the processor time of a tile, which what else runs on the machine disturbs less.
+  /// Appends a figure for each contestant, and how many times as fast as each peer Trapeze is: by
+  /// tiles per second, and by processor time per tile, which is less affected by other load on the
+  /// machine.
   void append_to(std::vector<Figure>& figures) const {
     for (const Contestant& contestant : contestants_) figures.push_back(contestant.figure);
     for (std::size_t ours = 0; ours < kOurs; ++ours) figures.push_back(ratios_of(ours));
   }
 
-  /// A few tiles of the trip, drawn by all three.
+  /// Draws a few tiles of the trip with all three.
   void draw_side_by_side() const {
     const Trip some{trip_.name, trip_.layers, some_tiles()};
     SideBySide pictures;
@@ -126,7 +127,7 @@ class Contest {
   static constexpr int kHopelessSeconds = 5;  // of wall time, for a tile
   static constexpr int kSlowSeconds = 90;     // for a trip
 
-  /// One tile of every so many, so that there are some of all zooms.
+  /// One tile out of so many, so that all zooms are represented.
   Trip some_of_trip(std::size_t one_of) const {
     Trip some{trip_.name, trip_.layers, {}};
     for (std::size_t i = 0; i < trip_.tiles.size(); i += one_of) {
@@ -146,8 +147,8 @@ class Contest {
     }
   }
 
-  /// Who fails at the first tile has no figure; who would need minutes for all of them has that of
-  /// some.
+  /// A contestant that fails at the first tile has no figure; one that would need minutes for all
+  /// tiles gets a figure for some of them.
   void try_out(Contestant& contestant) const {
     if (const std::string failure = failure_of(contestant); !failure.empty()) {
       contestant.is_slow = true;

@@ -1,4 +1,4 @@
-// The same tiles drawn by different programs, to see and to count whether they are the same.
+// The same tiles drawn by different programs, for visual comparison and for counting differences.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@ namespace trapeze {
 
 class SideBySide {
  public:
-  /// One PNG for each tile, the same tiles in the same order for everyone. Throws
+  /// One PNG for each tile, the same tiles in the same order for all programs. Throws
   /// std::runtime_error if one is not a PNG.
   void add(const std::string& name, const std::vector<std::string>& pngs);
 
-  /// How far each is from the first, on white, to standard output.
+  /// Prints the difference of each from the first one, on white, to standard output.
   void print_differences() const;
 
-  /// A PNG with a row for each tile and a column for each program, on white. Throws
+  /// Writes a PNG with a row for each tile and a column for each program, on white. Throws
   /// std::runtime_error if it cannot be written.
   void write(const std::string& path) const;
 

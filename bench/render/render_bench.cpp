@@ -1,11 +1,11 @@
-// What the stages of a picture cost: the mask by each renderer, colour, PNG.
+// The cost of the stages of a picture: the mask with each renderer, colour, PNG.
 //
 //   render_bench                          all stages
 //   render_bench --benchmark_filter=draw  the renderers only
 //
-// Pictures are 256 x 256. "scatter" is as many small separate trapezoids as named, like buildings;
-// "strips" fill half of the picture with as many slanted ones, some thin, some large, like land
-// use.
+// Pictures are 256 x 256. "scatter" has the named number of small separate trapezoids, like
+// buildings; "strips" fill half of the picture with as many slanted ones, some thin, some large,
+// like land use.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -70,7 +70,7 @@ class BenchMesh {
             vertices_, edges_, trapezoids_};
   }
   TrapezoidRange all() const { return {0, static_cast<std::uint32_t>(trapezoids_.size())}; }
-  /// All of it, in so many ranges of equal length.
+  /// All trapezoids, in that many ranges of equal length.
   std::vector<TrapezoidRange> in_ranges(std::uint32_t count) const {
     const auto length = static_cast<std::uint32_t>(trapezoids_.size()) / count;
     std::vector<TrapezoidRange> ranges;

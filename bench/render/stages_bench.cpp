@@ -1,12 +1,12 @@
-// What the stages of a tile cost on real maps: selection, drawing, colour, PNG.
+// The cost of the stages of a tile on real maps: selection, drawing, colour, PNG.
 //
 //   TRAPEZE_DATA=folder stages_bench                     all, some minutes
 //   stages_bench --benchmark_filter=draw/software        a part
 //
-// Names are STAGE/LAYER/zoom:Z. The layers stand for what maps hold: many small polygons
-// (buildings), middling ones with holes (land use), a coverage (countries), one giant. Of each
-// layer and zoom the same tiles are gone through in turns, each of which holds a random vertex;
-// times are those of one tile.
+// Names are STAGE/LAYER/zoom:Z. The layers represent typical contents of maps: many small polygons
+// (buildings), medium ones with holes (land use), a coverage (countries), one giant. For each layer
+// and zoom the same tiles, each of which contains a random vertex, are processed in turns; times
+// are per tile.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -34,10 +34,10 @@ constexpr const char* kLayers[] = {"malta_buildings", "malta_landuse", "shenzhen
                                    "europe_countries", "usa48_land"};
 constexpr int kZooms[] = {2, 6, 10, 14, 18};
 constexpr std::size_t kTiles = 16;
-constexpr double kTolerance = 0.25;  // pixels, as requests have it if they do not say
+constexpr double kTolerance = 0.25;  // pixels, the default of requests
 constexpr Rgba kFill{160, 80, 64, 255};
 
-/// A layer and what is asked of it.
+/// A layer and its places.
 struct Subject {
   std::unique_ptr<Layer> layer;
   Places places;
@@ -55,7 +55,7 @@ const Subject& subject_of(const std::string& name) {
   return subject;
 }
 
-/// One of the tiles, with what the stages hand on.
+/// One of the tiles, with the data passed between stages.
 struct StagedTile {
   View view;
   Layer::Selection selection;
@@ -98,7 +98,7 @@ void compose_one(Composer& composer, StagedTile& tile) {
                    tile.picture);
 }
 
-/// Does the step for one tile after the other.
+/// Runs the step for one tile after the other.
 template <typename Step>
 void go_round(benchmark::State& state, std::vector<StagedTile>& tiles, const Step& step) {
   std::size_t next = 0;

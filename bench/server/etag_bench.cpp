@@ -1,11 +1,12 @@
-// From a request to the 304 that answers it, of tiles that the server was never asked for before.
+// The time from a request to its 304 response, for tiles that were never requested from the server
+// before.
 //
 //   TRAPEZE_DATA=folder etag_bench
 //
-// In one process and without HTTP: a site draws every tile and so learns its entity tag; then a new
-// one, which knows nothing but the data, is asked for each with that tag. Layers and styles are
-// read, and classes and labels found, by one other tile first, as they are on a server that people
-// use. Every time counts; what is answered with anything but 304 ends the benchmark.
+// In one process and without HTTP: a site draws every tile and so determines its entity tag; then a
+// new site, which has only the data, gets a request for each tile with that tag. Before that, one
+// other tile makes it read layers and styles, and compute classes and labels, as on a server in
+// use. Every time counts; any response other than 304 ends the benchmark.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -39,7 +40,7 @@ struct Options {
                                 "europe_countries"};
   std::vector<std::string> styles{"", "stroke=333", "color-by={}&classes=*:red", "label={}"};
   std::size_t tiles = 30;
-  int first_zoom = 1;  // the tile of zoom 0 is the one asked for first
+  int first_zoom = 1;  // the tile of zoom 0 is the one requested first
   int last_zoom = 18;
   std::string json = "out/bench/etag.json";
 };
@@ -71,7 +72,7 @@ std::string attribute_of(const Dataset& dataset) {
   return found;
 }
 
-/// A site with nothing but data.
+/// A site that has only the data.
 class FreshSite {
  public:
   FreshSite(std::shared_ptr<const Dataset> dataset, const std::shared_ptr<LabelBook>& labels)

@@ -1,12 +1,12 @@
-// How long a tile takes when the data around it grows: the same trip over one layer, over that
-// layer ten times, and a hundred times, the copies lying around the original.
+// How the time for a tile changes when the data around it grows: the same trip over one layer, over
+// ten times that layer, and over a hundred times, with the copies around the original.
 //
 //   TRAPEZE_DATA=folder growth_bench
 //
-// Copies are shifted by whole tiles of zoom 7, farther than a screen at zoom 10 reaches, so that a
+// Copies are shifted by whole tiles of zoom 7, further than a screen at zoom 10 reaches, so that a
 // tile of the trip (zooms 10 to 17) shows the same picture with or without them; that is checked.
-// Tiles are asked for one at a time, of servers that run side by side, in turns. "zooms": tiles at
-// every zoom from 0 to 20; at the lowest they show the copies too.
+// Tiles are requested one at a time, in turns, from servers that run side by side. "zooms": tiles
+// at every zoom from 0 to 20; at the lowest zooms they show the copies, too.
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
@@ -71,7 +71,7 @@ std::vector<std::unique_ptr<OGRGeometry>> read_in_metres(const std::string& path
   return geometries;
 }
 
-/// Adds to every coordinate.
+/// Adds an offset to every coordinate.
 class Shift : public OGRDefaultGeometryVisitor {
  public:
   Shift(double x, double y) : x_(x), y_(y) {}
@@ -86,7 +86,7 @@ class Shift : public OGRDefaultGeometryVisitor {
   const double y_;
 };
 
-/// The n-th copy of so many lies in this place of a square with the original, n = 0, in it.
+/// The shift of the n-th copy in a square of copies that includes the original, n = 0.
 Shift shift_of(int n, int copies) {
   const int side = static_cast<int>(std::ceil(std::sqrt(copies)));
   const int original = side / 2 * side + side / 2;
@@ -123,7 +123,7 @@ std::vector<std::string> pictures_of(const TrapezeServer& server, const Trip& tr
   return load_http(server.port(), tile_requests(trip), {.keep_bodies = true}).bodies;
 }
 
-/// The layer so many times, served.
+/// The layer repeated that many times, with a server.
 class Grown {
  public:
   Grown(const Options& options, const std::string& renderer, int copies,
@@ -147,7 +147,8 @@ class Grown {
     along_zooms_.add(timed(zooms_, zoom_requests_, round));
   }
 
-  /// Whether the original looks just as with other copies around it, whose pictures these are.
+  /// Checks that the original looks the same as with other numbers of copies around it, whose
+  /// pictures are given.
   void check_pictures(const std::vector<std::string>& others) const {
     const auto ours = pictures_of(server_, trip_);
     std::size_t different = 0;

@@ -1,10 +1,10 @@
-// How long one tile takes, of any layer at any zoom, when nothing else is asked for.
+// The time for one tile of any layer at any zoom, when nothing else is requested.
 //
 //   TRAPEZE_DATA=folder latency_bench
 //
-// Every FlatGeobuf file of the folder is a layer; of every zoom from 0 to 22 tiles are asked for
-// that random vertices lie in, uncached, one after another over one connection. A tile counts with
-// the middle one of its times, so that what else the machine did does not show.
+// Every FlatGeobuf file of the folder is a layer. At every zoom from 0 to 22, tiles that contain
+// random vertices are requested, uncached, one after another over one connection. The median time
+// of each tile counts, which excludes the effects of other load on the machine.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -48,7 +48,7 @@ std::vector<TripLayer> layers_of(const std::string& folder,
   return layers;
 }
 
-/// The middle one of the times of each tile, `rounds` times of all tiles one after another.
+/// The median time of each tile, from `rounds` rounds over all tiles.
 std::vector<TileTime> middle_times(const std::vector<TileTime>& times, std::size_t rounds) {
   const std::size_t count = times.size() / rounds;
   std::vector<TileTime> middle;
@@ -63,7 +63,7 @@ std::vector<TileTime> middle_times(const std::vector<TileTime>& times, std::size
 }
 
 TileRun measure_layer(const TrapezeServer& server, const Trip& trip, int rounds, Figure& figure) {
-  // With one connection the answers come in the order of the requests.
+  // With one connection, responses arrive in the order of the requests.
   TileRun run = uncached_run(server, trip, {.connections = 1}, rounds);
   figure.set("longest answer, ms", std::ranges::max(run.tiles, {}, &TileTime::ms).ms);
   run.tiles = middle_times(run.tiles, static_cast<std::size_t>(rounds));
@@ -73,7 +73,7 @@ TileRun measure_layer(const TrapezeServer& server, const Trip& trip, int rounds,
   return run;
 }
 
-/// The layer and zoom whose slowest tiles are the slowest of all.
+/// The layer and zoom with the slowest tiles.
 Figure slowest(const std::vector<Figure>& figures, const std::string& renderer) {
   Figure worst("latency/trapeze-" + renderer + "/slowest");
   double p99 = 0;

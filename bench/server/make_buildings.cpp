@@ -1,7 +1,7 @@
-// Writes buildings that nobody has built: towns of 2,500 small blocks with gaps between them, on a
-// grid of towns as large as it takes, as a FlatGeobuf without an index, in memory that does not
-// grow; or with its spatial index, for which GDAL keeps some 100 bytes of each. The same number
-// gives the same file on every machine.
+// Writes artificial buildings: towns of 2,500 small blocks with gaps between them, on a grid of as
+// many towns as needed. The output is a FlatGeobuf without an index, written in constant memory, or
+// with its spatial index, for which GDAL keeps some 100 bytes per building. The same number gives
+// the same file on every machine.
 //
 //   make_buildings FILE.fgb BUILDINGS [index]
 
@@ -17,10 +17,10 @@
 
 namespace {
 
-constexpr int kLotsOfTown = 50;  // along either side
+constexpr int kLotsOfTown = 50;  // along each side
 constexpr int kBuildingsOfTown = kLotsOfTown * kLotsOfTown;
 constexpr double kLot = 3.0e-4;   // degrees
-constexpr double kTown = 5.0e-2;  // from one to the next
+constexpr double kTown = 5.0e-2;  // from one town to the next
 constexpr double kWest = 2;
 constexpr double kNorth = 54;
 
@@ -38,7 +38,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// A block with one corner cut out and another one cut off, turned: seven vertices.
+/// A block with one corner cut out and another one cut off, rotated: seven vertices.
 void draw_building(Random& random, double x, double y, OGRLinearRing& ring) {
   const double width = kLot * (0.25 + 0.15 * random.next());
   const double depth = kLot * (0.25 + 0.15 * random.next());

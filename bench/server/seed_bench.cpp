@@ -1,5 +1,6 @@
-// What seeding costs beside drawing: the tiles of a layer as `trapeze seed` does them, and those of
-// them that it draws once more by as many threads that do nothing else, in turns.
+// The cost of seeding in addition to drawing: the tiles of a layer as `trapeze seed` makes them,
+// compared with drawing the same drawn tiles again with the same number of threads and nothing
+// else, in turns.
 //
 //   seed_bench [--layer FILE] [--zooms A-B] [--rounds N]
 #include <CLI/CLI.hpp>
@@ -64,7 +65,7 @@ class Seeding {
     SeedFigures figures;
   };
 
-  /// As `trapeze seed`, up to the archive; in `drawn`, the tiles that were drawn.
+  /// As `trapeze seed`, up to the archive; `drawn` receives the tiles that were drawn.
   Run seed(std::vector<TileId>& drawn) const {
     const ScratchFolder folder;
     const std::string path = folder.path() + "/log";
@@ -84,7 +85,7 @@ class Seeding {
     return run;
   }
 
-  /// The tiles alone, one after the other on each thread.
+  /// Draws the tiles only, one after the other on each thread.
   double draw(const std::vector<TileId>& tiles) const {
     constexpr std::size_t kAtOnce = 64;
     const auto classes = TilePainter::new_class_cache();
@@ -109,7 +110,7 @@ class Seeding {
     return start_renderers(renderer_, renderer_count(0));
   }
 
-  // Contents that have a fingerprint were drawn; what is known of many tiles at once has none.
+  // Contents with a fingerprint were drawn; those determined for many tiles together have none.
   void add_drawn(const SeedBlock& block, std::vector<TileId>& drawn) const {
     std::set<std::uint64_t> contents;
     for (const BlockFingerprint& each : block.fingerprints()) contents.insert(each.content);

@@ -1,13 +1,13 @@
-// What styles cost: a tile drawn in each, against the same tile in the layer's own; and the way
-// from a URL to the key under which its tile is cached, the style written out or named. And what a
-// table of 100,000 rows takes that is posted: reading it, joining it to as many features, parting
-// its numbers into classes. And what labels take: placing 100,000 of them, and all that the first
-// tile of a labelled layer waits for.
+// The cost of styles: a tile drawn in each style, compared with the same tile in the layer's own;
+// and the steps from a URL to the cache key of its tile, with the style written out or named. Also
+// the cost of a posted table of 100,000 rows: reading it, joining it to as many features, and
+// dividing its numbers into classes. And the cost of labels: placing 100,000 of them, and
+// everything that the first tile of a labelled layer waits for.
 //
 //   TRAPEZE_DATA=folder style_bench
 //
-// Tiles are of Malta's land use and buildings, zooms 10 to 17, each of another zoom than the one
-// before, painted by the software renderer; times are those of one tile. Compare rows of one run.
+// Tiles are of Malta's land use and buildings, zooms 10 to 17, each at another zoom than the one
+// before, painted by the software renderer; times are per tile. Compare rows of one run.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -42,7 +42,7 @@ constexpr Style kStyles[] = {
     {"plain", ""},
     {"one_class", "color-by=type&classes=*:red"},
     {"three_classes", "color-by=type&classes=residential:red,farmland:green,*:blue"},
-    // The same picture, by numbers of a table that is joined.
+    // The same picture, from numbers of a joined table.
     {"three_classes_joined", "values=types&join=type&color-by=value&classes=1:red,2:green,*:blue"},
     {"filter", "filter=type='residential'"},
     {"outline", "stroke=black"},
@@ -57,7 +57,7 @@ constexpr Style kStyles[] = {
     {"grow_outline", "grow=2&stroke=black"},
     {"labels", "label=type"},
     {"labels_and_outline", "label=type&stroke=black"},
-    // Without making colours fewer, which takes most of a tile of many edges.
+    // Without reducing colours, which takes most of the time for a tile with many edges.
     {"plain_exact", "quality=exact"},
     {"three_classes_exact",
      "color-by=type&classes=residential:red,farmland:green,*:blue&quality=exact"},
@@ -146,7 +146,7 @@ void paint(benchmark::State& state, const std::string& query) {
   for (const TileId& tile : tiles()) plans.push_back(plan_of(target_of(tile, query)));
   TilePainter painter(make_renderer({RendererKind::software, {}}).renderer,
                       TilePainter::new_class_cache(), open_fonts({}), label_book());
-  // All of them, however slow the style is: they differ by more than styles do.
+  // Always all tiles, however slow the style is: tiles differ more than styles do.
   while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(plans.size()))) {
     for (const TilePlan& plan : plans) {
       const PaintJob job{&plan};
@@ -204,7 +204,7 @@ void part_rows(benchmark::State& state, const std::string& rule) {
   }
 }
 
-/// As many as people would see on the parcels of a city.
+/// As many as would be visible on the parcels of a city.
 std::vector<LabelCandidate> many_labels() {
   constexpr int kSide = 316;
   std::mt19937 random(1);

@@ -34,7 +34,7 @@ std::string layer_list(const Trip& trip) {
   return names;
 }
 
-/// The colour with other low bits: three of each channel. 0 <= variant < kColours.
+/// The colour with other low bits, three in each channel. 0 <= variant < kColours.
 std::string varied_colour(const std::string& colour, int variant) {
   const auto number = static_cast<int>(std::stoul(colour, nullptr, 16));
   const int mask = (variant & 7) | (variant >> 3 & 7) << 8 | (variant >> 6 & 7) << 16;
@@ -48,8 +48,8 @@ std::string target_of(const TileId& tile) {
          std::to_string(tile.y) + ".png";
 }
 
-/// Makes requests none of which can be answered with what was drawn for another: a tile that was
-/// asked for before is asked for in a slightly different colour of the lowest layer.
+/// Makes requests none of which can be answered with a tile drawn for another one: repeated tiles
+/// are requested in a slightly different colour of the lowest layer.
 class UncachedRequests {
  public:
   UncachedRequests(const Trip& trip, int first) : trip_(trip), first_(first) {}
@@ -118,7 +118,7 @@ void TrapezeServer::await_ready() {
         seconds_to_ready_ = std::chrono::duration<double>(duration).count();
         return;
       }
-    } catch (const std::exception&) {  // it does not listen yet
+    } catch (const std::exception&) {  // not listening yet
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

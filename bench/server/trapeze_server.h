@@ -1,4 +1,4 @@
-// The server under test: `trapeze serve` as a child, and the requests that a trip makes of it.
+// The server under test: `trapeze serve` as a child process, and the requests of a trip.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace trapeze {
 
-/// A folder of its own in the system's folder for such things, gone with this object.
+/// A temporary folder, removed with this object.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -31,16 +31,16 @@ struct TrapezeOptions {
   std::string program;              // trapeze
   std::string renderer = "auto";    // as for --renderer
   std::vector<std::string> more{};  // further arguments of `serve`
-  bool keeps_tiles = false;         // whether it has a cache: else every tile is drawn
+  bool keeps_tiles = false;         // whether it has a cache; otherwise every tile is drawn
 };
 
-/// The program `trapeze` of the build that this program is part of.
+/// The program `trapeze` of the build that this program belongs to.
 std::string built_trapeze();
 
 class TrapezeServer {
  public:
   /// Starts it on a free port with the layers and their colours; returns when it is ready. Throws
-  /// std::runtime_error, with where its log is, if it ends before.
+  /// std::runtime_error, with the path of its log, if it exits before.
   TrapezeServer(std::span<const TripLayer> layers, const TrapezeOptions& options);
 
   std::uint16_t port() const { return port_; }
@@ -59,19 +59,18 @@ class TrapezeServer {
 /// Requests for the tiles of a trip, all layers in each, in the layers' own colours.
 std::vector<std::string> tile_requests(const Trip& trip, const std::string& more_headers = {});
 
-/// Requests for the trip, so many times, or, for 0, so often that there are enough tiles (1,500) to
-/// tell anything by. None can be answered with what was drawn for another: a tile that was asked
-/// for before is asked for in a slightly different colour of the lowest layer, beginning with the
-/// colour of number `first`; number 0 is the layer's own. Throws std::runtime_error if there are
-/// not enough colours, which are kColours.
+/// Requests for the trip, `repeats` times, or, for 0, often enough for a meaningful number of tiles
+/// (1,500). None can be answered with a tile drawn for another one: repeated tiles are requested in
+/// a slightly different colour of the lowest layer, beginning with colour number `first`; number 0
+/// is the layer's own. Throws std::runtime_error if there are not enough colours (kColours).
 constexpr int kColours = 512;
 std::vector<std::string> uncached_requests(const Trip& trip, int repeats = 0, int first = 0);
 
-/// The times of the tiles of a trip. Throws std::runtime_error unless all were answered by 200 and,
-/// if `uncached`, drawn for it.
+/// The times of the tiles of a trip. Throws std::runtime_error unless all responses have status 200
+/// and, if `uncached`, were drawn for the request.
 TileRun tile_run(const Trip& trip, const LoadResult& result, bool uncached);
 
-/// Asks for uncached_requests, and takes the processor time of the server.
+/// Sends uncached_requests(), and measures the processor time of the server.
 TileRun uncached_run(const TrapezeServer& server, const Trip& trip, const HttpLoadOptions& load,
                      int repeats = 0);
 

@@ -1,22 +1,21 @@
-// Trapeze over HTTP: trips over real maps, first uncached, then again.
+// Trapeze over HTTP: trips over real maps, first uncached, then repeated.
 //
 //   TRAPEZE_DATA=folder trip_bench                          all trips, EGL and software
 //   trip_bench --trip malta --renderer egl --rounds 1       one of them, once
-//   trip_bench --trip malta --port 8080 --repeat 20         a server that runs already, for a
-//   profile
+//   trip_bench --trip malta --port 8080 --repeat 20         a running server, for a profile
 //
-// Of every trip and renderer:
-//   cold    all tiles once over 16 connections, of a server that was just started
-//   alone   the same over one connection: how long a tile takes when nothing else is asked for
+// For every trip and renderer:
+//   cold    all tiles once over 16 connections, from a server that was just started
+//   alone   the same over one connection: the time for a tile when nothing else is requested
 //   warm    all tiles again, now that they are known
 //   cached  one tile after another for some seconds, all known
-//   304     the same, asked for with the entity tags that were sent with them
-//   first   all tiles once, with these entity tags, of a server that was just started and has drawn
-//           nothing: how long it takes to find out that they are as they were
-// Servers of cold and alone keep no tiles, as many are equal. What is asked for again, as views
-// overlap or as a trip of few tiles is gone through several times, is asked for in a slightly
-// different colour, so that nothing that was drawn before can be used. Servers are started anew for
-// every round.
+//   304     the same, requested with the entity tags that were sent with them
+//   first   all tiles once, with these entity tags, from a server that was just started and has
+//   drawn
+//           nothing: the time to find out that they are unchanged
+// The servers for cold and alone cache no tiles, because many are equal. Repeated tiles, because
+// views overlap or because a trip with few tiles is repeated, are requested in a slightly different
+// colour, so that no tile drawn earlier can be used. Servers are restarted for every round.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -48,7 +47,7 @@ struct Options {
 
 struct Rate {
   double per_second = 0;
-  double cpu_us = 0;  // of the server, for one answer
+  double cpu_us = 0;  // of the server, per response
 };
 
 Rate rate_of(const TrapezeServer& server, const std::vector<std::string>& requests, int status,
@@ -65,7 +64,7 @@ Rate rate_of(const TrapezeServer& server, const std::vector<std::string>& reques
   return {answers / result.seconds, 1e6 * (server.cpu_seconds() - before) / answers};
 }
 
-/// Requests for the tiles that are only answered in full if they are not as they were.
+/// Requests that are only answered with the tile if it has changed.
 std::vector<std::string> conditional_requests(const Trip& trip,
                                               const std::vector<std::string>& entity_tags) {
   std::vector<std::string> requests;
@@ -156,7 +155,7 @@ void print(const Figure& figure) {
   if (figure.name().ends_with("/alone")) print_zooms(figure);
 }
 
-/// Only load for a server that somebody else has started.
+/// Only sends load to a server that is already running.
 void load_running_server(const Options& options) {
   for (const std::string& name : options.trips) {
     const Trip trip = named_trip(name, real_data_folder());
