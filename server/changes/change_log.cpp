@@ -97,13 +97,22 @@ bool is_shown_otherwise(const ServedLayer& before, std::size_t position_before,
 }  // namespace
 
 ChangeLog::ChangeLog(Options options) : options_(std::move(options)) {
-  comparing_ = std::thread([this] { compare_steps(); });
-  if (!options_.command.empty()) telling_ = std::thread([this] { tell_command(); });
+  try {
+    comparing_ = std::thread([this] { compare_steps(); });
+    if (!options_.command.empty()) telling_ = std::thread([this] { tell_command(); });
+  } catch (...) {
+    stop();
+    throw;
+  }
 }
 
 ChangeLog::~ChangeLog() {
+  stop();
+}
+
+void ChangeLog::stop() {
   end_command();
-  comparing_.join();
+  if (comparing_.joinable()) comparing_.join();
 }
 
 void ChangeLog::end_command() {

@@ -83,6 +83,7 @@ class ChangeLog {
     std::map<std::string, ChangedLayer> layers;  // by name
   };
 
+  void stop();
   void compare_steps();
   std::vector<ChangedLayer> compare(const Step& step) const;
   void drop_oldest();

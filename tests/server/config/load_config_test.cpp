@@ -459,6 +459,11 @@ TEST_F(ConfigTest, AMissingFileIsAnErrorThatNamesIt) {
   }
 }
 
+TEST(ConfigFolderTest, AFolderIsNotReadAsAnEmptyConfiguration) {
+  const LoadedConfig loaded = load_config(::testing::TempDir(), {});
+  EXPECT_THAT(problems_text(loaded.problems), HasSubstr("it is a folder"));
+}
+
 std::string example_text() {
   std::ifstream file(TRAPEZE_CONFIG_FOLDER "/example.toml");
   return {std::istreambuf_iterator<char>(file), {}};
