@@ -20,7 +20,7 @@ std::vector<std::unique_ptr<MaskRenderer>> start_renderers(const RendererOptions
                                                            int count) {
   MadeRenderers made = make_renderers(options, count);
   for (const RendererFailure& failure : made.failures) {
-    spdlog::info("not drawing by {}: {}", failure.what, failure.reason);
+    spdlog::info("not rendering with {}: {}", failure.what, failure.reason);
   }
   const MaskRenderer& first = *made.renderers.front();
   spdlog::info("rendering with {}: {}, {} worker{}", first.name(), first.description(), count,

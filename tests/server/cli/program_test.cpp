@@ -211,7 +211,7 @@ TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
   EXPECT_EQ(half.receive().status, 200) << "what was asked before the signal is answered";
   EXPECT_EQ(program.wait(), 0);
   EXPECT_THAT(program.output(),
-              AllOf(HasSubstr("drawing by software"), HasSubstr("rings.geojson: 1 of 1 features"),
+              AllOf(HasSubstr("rendering with software"), HasSubstr("rings.geojson: 1 of 1 features"),
                     HasSubstr("ready: 2 layers"), HasSubstr("SIGTERM"), HasSubstr("stopped")));
 }
 
