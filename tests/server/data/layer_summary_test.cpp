@@ -1,7 +1,6 @@
 #include "server/data/layer_summary.h"
 
 #include <gmock/gmock.h>
-
 #include <spdlog/fmt/fmt.h>
 
 #include <string>
@@ -16,12 +15,12 @@ namespace {
 
 class StripAroundLayersTest : public ::testing::Test {
  protected:
-  /// Of a layer of boxes from one longitude to another, 10 degrees high.
+  /// The strip around a layer of boxes between these longitudes, 10 degrees high.
   LongitudeStrip strip_around(const std::vector<std::pair<double, double>>& boxes) {
     std::string features;
     for (const auto& [west, east] : boxes) {
       features += fmt::format(
-          R"({}{{"type":"Feature","properties":{{}},"geometry":{{"type":"Polygon","coordinates":)"
+          R"({0}{{"type":"Feature","properties":{{}},"geometry":{{"type":"Polygon","coordinates":)"
           R"([[[{1},0],[{2},0],[{2},10],[{1},10],[{1},0]]]}}}})",
           features.empty() ? "" : ",", west, east);
     }
