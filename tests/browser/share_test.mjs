@@ -142,7 +142,7 @@ test("a style changed by hand is kept under an id, or stands in a long address: 
     const { page, seen } = await open(
       "#5/46/10&style=night&lake.fill=ff0000&land.filter=name%20%3D%20'island'&topology=fast&simplify=4");
     const short = (await links(page)).TileJSON;
-    await page.getByLabel("Long addresses").check();
+    await page.getByLabel("Long, permanent URLs").check();
     const long = (await links(page)).TileJSON;
     assert.match(short, /\?style=[0-9a-f]{40}$/);
     assert.match(long, /lake\.fill=ff0000/);
@@ -158,7 +158,7 @@ test("a style changed by hand is kept under an id, or stands in a long address: 
 
 test("the command for curl and the <img> fetch the tile in the middle of the map", async () => {
   const { page } = await open("#5/46/10&lake.fill=ff0000&land.filter=name%20%3D%20'island'");
-  await page.getByLabel("Long addresses").check();
+  await page.getByLabel("Long, permanent URLs").check();
   const folder = mkdtempSync(join(tmpdir(), "trapeze-share-"));
   const command = await snippet(page, "curl");
   execFileSync("sh", ["-c", command.replace("curl ", "curl -sS -f ")], { cwd: folder });

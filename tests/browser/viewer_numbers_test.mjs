@@ -83,7 +83,7 @@ test("a pasted table colours the layer, says what does not match, and is in the 
   await form.getByRole("button", { name: "Show on the map" }).click();
   await page.waitForFunction(() => location.hash.includes("columns.values="));
   const said = form.locator(".numbers .part > [role=status]");
-  assert.equal(await said.textContent(), "10 rows match. 1 does not: XX. 2 shapes have no value.");
+  assert.equal(await said.textContent(), "10 rows match. 1 does not: XX. 2 features have no value.");
   await page.waitForFunction(() =>
     document.querySelector("#legend-body h2")?.textContent === "Columns: score");
   assert.deepEqual(await legend_rows(page),
@@ -142,7 +142,7 @@ test("what is wrong with a table is said beside it, and the map stays", async ()
   };
   await says("Paste a table first.");
   await table.fill("code,score\nC1,1\nC1,2\n");
-  await says("come more than once: C1 (rows 2 and 3)");
+  await says("occur more than once: C1 (rows 2 and 3)");
   assert.equal(await table.getAttribute("aria-invalid"), "true");
   await save_screenshot(page, "phone-numbers");
   await table.fill("code,score\nC1,many\nC2,2\n");

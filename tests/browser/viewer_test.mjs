@@ -304,7 +304,7 @@ test("a server that is not ready or not there is waited for, in words", async ()
   const status = page.locator("#status");
   await status.getByText("still reading its layers").waitFor();
   await status.getByText("cannot be reached").waitFor();
-  await status.getByText("cannot be understood").waitFor();
+  await status.getByText("cannot be parsed").waitFor();
   await tiles_drawn(page);
   assert.equal(await status.isVisible(), false);
   assert.deepEqual(seen.errors.filter((text) => !FAILED_RESOURCE.test(text)), []);
