@@ -100,7 +100,7 @@ test("simplify by a slider: each step is drawn, and back is as it was", async ()
   const { page, seen, offer } = await open();
   await offer.getByRole("button", { name: TRIALS[0] }).click();
   await wait_for_queries(page, { style: "dusk", simplify: "4" });
-  await offer.getByLabel("Simplify with").fill("9");
+  await offer.getByLabel("Simplify by").fill("9");
   await wait_for_queries(page, { style: "dusk", simplify: "64" });
   assert.equal(await offer.locator("output").innerText(), "64 px");
   await save_screenshot(page, "desktop-try-simplify");
