@@ -238,14 +238,29 @@ bool KnownTiles::may_have_labels(const TileId& tile) const {
          labels_->is_any_from({*plan.dataset, plan.labels, View::of_tile(tile), 1});
 }
 
-// From the other end of the world.
-bool KnownTiles::may_have_lines_over_the_antimeridian(const TileId& tile) const {
-  const bool is_at_edge = tile.x == 0 || tile.x + 1 == std::uint32_t{1} << tile.z;
-  return is_at_edge && std::ranges::any_of(drawn_, [](const Drawn& drawn) {
-           return std::ranges::any_of(drawn.paints, [](const LayerPaint* paint) {
-             return paint != nullptr && paint->style.stroke.width > 0;
-           });
-         });
+// Outlines near the other end of the world reach across the antimeridian. What is looked for there
+// has the height of the widened tile, and the width by which the tile is widened.
+bool KnownTiles::may_have_lines_over_the_antimeridian(const TileId& tile) {
+  const bool is_first = tile.x == 0;
+  const bool is_last = tile.x + 1 == std::uint32_t{1} << tile.z;
+  if (!is_first && !is_last) return false;
+  return std::ranges::any_of(drawn_, [&](Drawn& drawn) {
+    LevelSpanSelection selection = selection_of(drawn, tile);
+    if (!selection.has_edges) return false;
+    if (is_first && is_last) return true;
+    Box& box = selection.box;
+    if (is_first) {
+      const std::int64_t reach = box.max_x - (tile.origin_x() + tile.side());
+      box.min_x = static_cast<std::int32_t>(kGridMax - reach);
+      box.max_x = kGridMax;
+    } else {
+      const std::int64_t reach = tile.origin_x() - box.min_x;
+      box.min_x = kGridMin;
+      box.max_x = static_cast<std::int32_t>(kGridMin + reach);
+    }
+    selection.dust_box = box;
+    return !find(drawn, selection, tile, across_) || !across_.empty();
+  });
 }
 
 void KnownTiles::find_looks(const Step& step) {

@@ -80,7 +80,7 @@ class KnownTiles {
   LevelSpanSelection selection_of(const Drawn& drawn, const TileId& tile) const;
   int first_zoom(const TileId& tile) const;
   bool may_have_labels(const TileId& tile) const;
-  bool may_have_lines_over_the_antimeridian(const TileId& tile) const;
+  bool may_have_lines_over_the_antimeridian(const TileId& tile);
   void find_looks(const Step& step);
   std::optional<TileLook> find_look(const Step& step, int zoom);
   enum class Seen : std::uint8_t { nothing, one_colour, something };
@@ -100,6 +100,7 @@ class KnownTiles {
   TileId tile_;
   bool is_known_ = false;
   std::vector<std::optional<TileLook>> looks_;  // by zoom
+  LevelSpan across_;                            // kept for its memory
   std::vector<TrapezoidRange> ranges_;          // reused to save allocations
 };
 

@@ -776,7 +776,7 @@ TEST(ProgramTest, PrintsTheTableOfParametersAndSaysSoInItsHelp) {
   EXPECT_THAT(table.output(), AllOf(HasSubstr("fill-opacity"), HasSubstr("|")));
   Program help({"--help"});
   EXPECT_EQ(help.wait(), 0);
-  EXPECT_THAT(help.output(), ::testing::ContainsRegex("\n  parameters +Print what a style"));
+  EXPECT_THAT(help.output(), ::testing::ContainsRegex("\n  parameters +Print a table of"));
 }
 
 TEST(ProgramTest, ChecksFilesAndGoesOnAfterABadOne) {

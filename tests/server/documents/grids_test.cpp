@@ -116,7 +116,7 @@ TEST_F(GridsTest, WhatIsNotBuiltIsRefusedWithTheNamesOfWhatIs) {
     const auto response = sample_.get(target);
     EXPECT_EQ(response.status, 400) << target;
     EXPECT_THAT(*response.body,
-                HasSubstr("not built for EPSG:2056, but for EPSG:3857, CRS:84, EPSG:4326, "
+                HasSubstr("not built for EPSG:2056, only for EPSG:3857, CRS:84, EPSG:4326, "
                           "EPSG:5042, EPSG:32760"))
         << target;
   }

@@ -158,7 +158,7 @@ TEST_F(ValuesSiteTest, ColoursByPostedWordsAndByKeysThatAreNumbers) {
   EXPECT_THAT(words("/tiles/columns/0/0/0.png?values=" + id +
                         "&join=number&color-by=value&breaks=quantile:3&ramp=Reds",
                     400),
-              HasSubstr("words"));
+              HasSubstr("are text"));
 }
 
 TEST_F(ValuesSiteTest, FiltersByValue) {

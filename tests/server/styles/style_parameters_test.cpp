@@ -59,8 +59,8 @@ TEST(StyleParametersTest, ANameThatMeansNothingIsAProblemWithTheNearestThatDoes)
            {"fill%20=red", "\"fill\"?"},
            {"lake.fill=red", "\"lakes.fill\"?"},
            {"roads.fil=red", "\"roads.fill\"?"},
-           {"roads.background=red", "background is one of the whole tile"},
-           {"sea.opacity=1", "no layer \"sea\" is asked for"},
+           {"roads.background=red", "background applies to the whole tile"},
+           {"sea.opacity=1", "the request has no layer \"sea\""},
            {"=red", "\"\"."},
            {"v=7", "\"v\"."}}) {
     const Problem problem = problem_of(query);

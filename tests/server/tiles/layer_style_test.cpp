@@ -178,7 +178,7 @@ TEST_F(LayerStyleTest, WhatDoesNotFitTheLayerOrItselfIsAProblem) {
       {"color-by=people&breaks=1", "breaks", "ramp"},
       {"color-by=people&ramp=Blues", "ramp", "breaks"},
       {"color-by=people&classes=1:red&breaks=1&ramp=Blues", "classes", "no breaks"},
-      {"color-by=kind&breaks=1&ramp=Blues", "color-by", "numbers"},
+      {"color-by=kind&breaks=1&ramp=Blues", "color-by", "numeric"},
       {"color-by=people&classes=x:red", "classes", "integers"},
       {"color-by=people&classes=1.5:red", "classes", "integers"},
       {"color-by=height&classes=x:red", "classes", "numbers"},
