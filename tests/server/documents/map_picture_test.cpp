@@ -79,7 +79,8 @@ TEST_F(MapPictureTest, OutlinesReachOverTheAntimeridian) {
           ASSERT_LE(off(east.at(column, row), both.at(column + 256, row)), 1)
               << join << " " << zoom << " " << column << " " << row;
         }
-        inked += east.at(2, row) == Rgba{0, 0, 0, 255};
+        const Rgba ink = east.at(2, row);
+        inked += ink.r == 0 && ink.a > 40;  // lines of small polygons are lighter
       }
       EXPECT_GT(inked, 10) << "the coast is in the other half of the world";
     }
