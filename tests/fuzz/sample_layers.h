@@ -1,4 +1,4 @@
-// Layers to ask for, made in memory: as small as they can be and still have everything.
+// In-memory layers to request: as small as possible, but with every kind of content.
 #pragma once
 
 #include <memory>
