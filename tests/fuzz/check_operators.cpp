@@ -33,7 +33,7 @@ void require_sound(const TrapezoidalGraph& graph) {
   require(violation.empty(), violation);
 }
 
-/// I11: the graph is the one of the rings that are left.
+/// I11: the graph is that of the remaining rings.
 void require_rebuilt(const TrapezoidalGraph& graph) {
   Rings rings = rings_of(graph);
   TrapezoidalGraph fresh;

@@ -33,7 +33,7 @@ using fuzzing::Checks;
 using fuzzing::require;
 
 constexpr std::int16_t kEndOfRing = 0x7fff;
-constexpr std::size_t kMaxPoints = 300;  // the checks are slower than what they check
+constexpr std::size_t kMaxPoints = 300;  // the checks are slower than the checked code
 constexpr std::size_t kMaxFeatures = 12;
 
 struct Input {

@@ -29,7 +29,7 @@ namespace {
 using fuzzing::require;
 
 const std::string kPath = "/vsimem/fuzz.geojson";
-constexpr std::size_t kMaxPoints = 400;  // of a feature; the checks are slower than what they check
+constexpr std::size_t kMaxPoints = 400;  // of a feature; checks are slower than the code
 
 /// An in-memory file that refers to the input.
 class MemoryFile {

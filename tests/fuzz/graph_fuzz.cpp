@@ -13,7 +13,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::int16_t kEndOfRing = 0x7fff;
-constexpr std::size_t kMaxPoints = 400;  // the checks are slower than what they check
+constexpr std::size_t kMaxPoints = 400;  // the checks are slower than the checked code
 
 Rings rings_from(const std::uint8_t* data, std::size_t size, int scale) {
   Rings rings;

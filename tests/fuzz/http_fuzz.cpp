@@ -102,7 +102,7 @@ class FuzzedServer {
     sent_.push_back({answered.request.method, answered.response.status, bytes});
   }
 
-  std::mutex mutex_;  // guards the one below
+  std::mutex mutex_;  // guards sent_
   std::vector<Sent> sent_;
   const std::unique_ptr<HttpServer> server_ = std::make_unique<HttpServer>(
       options(), answer, [this](const Answered& answered) { observe(answered); });

@@ -42,7 +42,7 @@ namespace {
 
 constexpr std::size_t kBytesOfChange = 7;
 constexpr std::size_t kMaxChanges = 16;
-constexpr int kCornerPixels = 24;  // drawn of a tile for most inputs: whole ones take a hundred
+constexpr int kCornerPixels = 24;  // drawn of a tile for most inputs: whole tiles take a hundred
                                    // times as long and lead to the same places
 
 struct alignas(kSectionAlignment) Block {

@@ -8,8 +8,8 @@
 namespace trapeze::fuzzing {
 
 /// "land": twelve polygons from a few cells to half of the world, some with a hole, with the
-/// properties "name" (text), "rank" (integer, sometimes null) and "size" (real). "water": two
-/// polygons without properties, drawn at the zooms 1 to 6, whose "stroke" is locked.
+/// attributes "name" (text), "rank" (integer, sometimes null) and "size" (real). "water": two
+/// polygons without attributes, drawn at the zooms 1 to 6, with a locked "stroke".
 std::shared_ptr<const Dataset> sample_layers();
 
 }  // namespace trapeze::fuzzing

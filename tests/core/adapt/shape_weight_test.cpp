@@ -130,7 +130,7 @@ TEST(ShapeWeights, OfTwoVerticesOnBothSidesOfTheNewBoundaryBothTrianglesCount) {
   EXPECT_NEAR(cost_of_pair({0, 0}, {10000, 0}, {10000, 100}, {20000, 100}), 500000 * 0.2575, 7000);
   // A step as high as its walls are long: its right angles are lost.
   EXPECT_DOUBLE_EQ(cost_of_pair({0, 0}, {100, 0}, {100, 100}, {200, 100}), 4 * 5000);
-  // A bump on one side: a square.
+  // A square bump on one side.
   EXPECT_DOUBLE_EQ(cost_of_pair({0, 0}, {0, 100}, {100, 100}, {100, 0}), 10000);
 }
 

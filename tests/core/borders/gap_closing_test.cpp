@@ -224,8 +224,8 @@ TEST(GapClosing, NoFeatureChangesByMoreThanItsBoundaryAndNoneComeToOverlap) {
   EXPECT_GT(moved, 500u) << "so something has been tested";
 }
 
-//   ______ ______     The left one is narrow and stays. What the middle one has in common with it
-//  |_|    |      |    stays as well, though the right one is near.
+//   ______ ______     The left one is narrow and stays. The border that the middle one shares with it
+//  |_|    |      |    it, though the right one is near.
 //  | |____|______|
 TEST(GapClosing, BordersInCommonWithWhatTakesNoPartRemain) {
   const Texts texts{"97 0, 100 0, 100 50, 100 100, 97 100",

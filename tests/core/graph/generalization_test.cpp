@@ -173,7 +173,7 @@ TEST(Figure4, f_DegenerationAboveATipAtTheBottom) {
   EXPECT_EQ(p.inside(), (Names{"D-C DB|DC", "C-B DB|CA", "B-A BA|CA"}));
 }
 
-// The top side of a polygon with its two vertices V and W, shared with nobody; W is kept. The
+// The top side of a polygon with its two vertices V and W, not shared; W is kept. The
 // trapezoid below collapses into a triangle with its tip at W.
 //
 //      V------W                       W
@@ -324,8 +324,8 @@ TEST(TouchingRings, AVertexStaysWhileItsNeighboursAreJoinedByAnEdgeAlready) {
   EXPECT_EQ(p.inside(), (Names{"A-C AB|AC", "C-B AB|CB"}));
 }
 
-//      A-----B            Two triangles with the tip W in common: each goes by itself, and W stays
-//       \   /             as long as one of them is there.
+//      A-----B            Two triangles with a shared tip W: each is removed alone, and W stays
+//       \   /             as long as one of them exists.
 //        \ /
 //         W
 //        / \              .
@@ -340,7 +340,7 @@ TEST(TouchingRings, AnHourglassGoesOneBulbAtATime) {
 }
 
 //      A
-//      |\  .                the last three vertices of a polygon go together
+//      |\  .                the last three vertices of a polygon are removed together
 //      | V
 //      |/
 //      B

@@ -1,4 +1,5 @@
-// Graphs of real polygons: exact areas, the way back, random jumps, and lifespans, file by file.
+// Graphs of real polygons: exact areas, reverted removals, random jumps, and lifespans, file by
+// file.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -24,7 +24,7 @@ class GrowExportTest : public testing::ReshapedExportTest {
  protected:
   GrowExportTest() { options_.grow = {4, 5 * kMetre}; }  // to 20 m
 
-  /// In square metres.
+  /// The area in square metres.
   static double area(const Rings& rings) {
     return static_cast<double>(doubled_area({rings})) / 2 / kMetre / kMetre;
   }

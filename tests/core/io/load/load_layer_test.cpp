@@ -628,8 +628,8 @@ TEST_F(LoadLayerTest, NeighboursAreBroughtTogetherUpToADistance) {
   EXPECT_EQ(closed.features, 40u);
 }
 
-//   _____             The corner goes to that of the square, but no border is shared: the triangle
-//  |     |\           is as it was drawn.
+//   _____             The corner moves to that of the square, but no border is shared: the triangle
+//  |     |\           stays as drawn.
 //  |_____| \.
 TEST_F(LoadLayerTest, WhatSharesNoBorderAfterGapsAreClosedIsAsItWasDrawn) {
   const std::string path = folder_.file("corner.fgb");
