@@ -224,7 +224,7 @@ TEST(GapClosing, NoFeatureChangesByMoreThanItsBoundaryAndNoneComeToOverlap) {
   EXPECT_GT(moved, 500u) << "so something has been tested";
 }
 
-//   ______ ______     The left one is narrow and stays. The border that the middle one shares with it
+//   ______ ______     The left one is narrow and stays. The middle one keeps its border with
 //  |_|    |      |    it, though the right one is near.
 //  | |____|______|
 TEST(GapClosing, BordersInCommonWithWhatTakesNoPartRemain) {
