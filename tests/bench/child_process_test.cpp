@@ -34,7 +34,7 @@ TEST(ChildProcessTest, CountsTheProcessorTimeOfChildrenToo) {
   EXPECT_GE(child.cpu_seconds(), 0.05);
 }
 
-/// A process that nobody has waited for yet is still listed, as a zombie.
+/// A process that has not been waited for is still listed, as a zombie.
 bool has_ended(pid_t pid) {
   std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
   std::string number;

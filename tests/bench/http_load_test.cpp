@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// Answers the requests of one connection, one after another, a few bytes at a time.
+/// Responds to the requests of one connection, one after another, a few bytes at a time.
 class SlowServer {
  public:
   using Answer = std::function<std::string(const std::string& request)>;

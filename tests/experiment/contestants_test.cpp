@@ -1,4 +1,4 @@
-// All contestants draw the same map; otherwise they could not be compared.
+// All contestants draw the same map; otherwise a comparison would be meaningless.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -11,7 +11,7 @@
 namespace trapeze::experiment {
 namespace {
 
-// Nothing stands in the way of any vertex of the map, so topology makes no difference to it.
+// No vertex of the map is blocked, so topology makes no difference to it.
 class ContestantsTest : public ::testing::TestWithParam<Method> {
  protected:
   static void expect_same(const std::vector<Mask>& drawn, const std::vector<Mask>& expected) {
@@ -53,9 +53,9 @@ TEST_P(ContestantsTest, DrawTheSame) {
     std::vector<Mask> drawn;
     std::vector<Mask> reference;
     // The uppermost vertex of a building: buildings are so far apart that the closest view around
-    // any other place may have none.
+    // any other position may contain none.
     const Point centre = map_.layers[1].polygons.rings[0][0];
-    // In and out again, so that graphs go forward and back.
+    // Zooms in and out, so that graphs are adapted in both directions.
     for (const double scale : {50000., 8000., 3000., 8000., 120000., 3000.}) {
       const ScaledView view = view_around(map_, centre, scale, 800, 600, 1);
       const ViewCost cost = contestant->draw(view, drawn);
@@ -82,7 +82,7 @@ TEST(DeviceTrapezoidsTest, MoreThanAChunkIsDrawn) {
   TrapezoidList list;
   const Box everything{kGridMin, kGridMin, kGridMax, kGridMax};
   const auto count = static_cast<std::int32_t>(device.chunk_size() + 1000);
-  // Slices of one cell, a pixel wide together with 4095 others.
+  // Slices one cell wide; 4096 of them make a pixel.
   for (std::int32_t x = 0; x < count; ++x) {
     list.append({0, 4096, {x, 0}, {x, 4096}, {x + 1, 0}, {x + 1, 4096}}, everything);
   }

@@ -34,7 +34,7 @@ std::vector<Numbers> sorted(const std::vector<TrapezoidRecord>& records) {
   return numbers;
 }
 
-/// Those of the core's plane sweep that have height.
+/// The trapezoids of the core's plane sweep that have height.
 std::vector<Numbers> of_the_core(Rings rings) {
   TrapezoidalGraph graph;
   GraphBuilder builder;
@@ -108,7 +108,7 @@ TEST(OpenTrapezoids, NodesWhatCrosses) {
   EXPECT_EQ(area_between(trapezoids, 0, 100), 5000);
 }
 
-// Without cleaning before it, as it is after a simplification without topology.
+// Without previous cleaning, as after a simplification without topology.
 TEST(OpenTrapezoids, DrawRingsInAnyStateByEvenOdd) {
   for (unsigned seed = 0; seed < kShapes; ++seed) {
     const Rings rings = random_shape(seed);
@@ -133,7 +133,7 @@ TEST(OpenTrapezoids, CutToTheViewCoverWhatTheyCoverThere) {
       const TrapezoidList all = tessellated(rings, Boundary::simple);
       const Box& box = set.boxes[p];
       const double height = static_cast<double>(box.max_y) - box.min_y;
-      // Levels of vertices among them.
+      // Includes rows at the y of vertices.
       const auto top = static_cast<std::int32_t>(box.min_y + height * random.next());
       const std::int32_t bottom = rings
                                       .points[static_cast<std::size_t>(

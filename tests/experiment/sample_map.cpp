@@ -15,7 +15,7 @@ MapLayer layer_of(const std::string& title, std::vector<Rings> features) {
   return layer;
 }
 
-/// Made smaller and moved beside the town.
+/// Scaled down and moved beside the town.
 Rings small_coast() {
   Rings coast = wiggly_star(2000);
   for (Point& p : coast.points) p = {p.x / 1000 - 400000, p.y / 1000 + 500000};

@@ -1,4 +1,4 @@
-// Maps that no file holds.
+// Generated maps.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace trapeze::experiment {
 /// The polygons of random_shape(0) to random_shape(count - 1), each on its own.
 std::vector<PolygonSet> random_polygon_sets(unsigned count);
 
-/// A town of so many buildings, beside a coast: two layers.
+/// A town with that number of buildings, beside a coast: two layers.
 Map sample_map(unsigned buildings);
 
 }  // namespace trapeze::experiment

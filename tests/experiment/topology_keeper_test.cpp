@@ -64,7 +64,8 @@ TEST(TopologyKeeper, KeepsAVertexWhoseLossWouldPutAHoleOutside) {
   ASSERT_EQ(set.rings.size(), 2u);
   const SimplifiedPolygons fast = simplified(set, Topology::fast, 12);
   EXPECT_EQ(fast.rings[0].size(), 4u);
-  // The hole is smaller than the tolerance, so that it goes, and the shell's vertex may.
+  // The hole is smaller than the tolerance, so that it is removed, and the shell's vertex may be
+  // removed too.
   EXPECT_EQ(simplified(set, Topology::strict, 12).rings[0].size(), 4u);
   const PolygonSet long_hole =
       set_of(rings_from_text("0 0, 100 0, 108 50, 100 100, 0 100; 60 45, 105 50, 60 80"));
@@ -76,9 +77,9 @@ TEST(TopologyKeeper, KeepsAVertexWhoseLossWouldPutAHoleOutside) {
 }
 
 // The first ring is a U whose bottom bulges up at (50, 40), with a bay beside the bulge. The tip of
-// the second ring is in the bay: the bulge as a whole does not enclose it, but a part of it does.
-// The third ring has to keep its tip because of the U, and then the bulge has to stay because of
-// that tip. What matters is where vertices are, so that the rings may cross.
+// the second ring is in the bay: the whole bulge does not enclose it, but a part of it does. The
+// third ring has to keep its tip because of the U, and the bulge then has to stay because of that
+// tip. Only the positions of vertices matter, so the rings may cross.
 TEST(TopologyKeeper, TestsPartsAgainstAllThatIsKept) {
   PolygonSet set;
   set.rings = rings_from_text(

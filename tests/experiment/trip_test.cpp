@@ -44,7 +44,7 @@ TEST(Trip, HasTheScalesOfFigure7BothWays) {
   const Map map = sample_map(40);
   const auto trip = plan_trip(map, {});
   for (const double share : kFigureScales) {
-    // The closest views follow each other.
+    // The two closest views are consecutive.
     EXPECT_THAT(views_of_scale(trip, share * 250000), SizeIs(share == 3.0 / 250 ? 1 : 2));
   }
 }

@@ -33,7 +33,7 @@ void require_sound(const TrapezoidalGraph& graph) {
   require(violation.empty(), violation);
 }
 
-/// I11: the graph is the one of the rings that are left.
+/// I11: the graph is that of the remaining rings.
 void require_rebuilt(const TrapezoidalGraph& graph) {
   Rings rings = rings_of(graph);
   TrapezoidalGraph fresh;
@@ -44,7 +44,7 @@ void require_rebuilt(const TrapezoidalGraph& graph) {
           "I11: the graph is not that of the rings that are left");
 }
 
-/// The first corner from a random one on that is alive and may go; none if there is none.
+/// The first corner, from a random one on, that exists and may be removed; none if there is none.
 struct Candidate {
   CornerId corner;
   Removal removal = Removal::blocked;
@@ -61,7 +61,7 @@ Candidate find_candidate(const TrapezoidalGraph& graph, Random& random) {
   return {};
 }
 
-/// I10 and I11, in an order that no weights would give.
+/// I10 and I11, in an order that no weights would produce.
 void check_any_order(const TrapezoidalGraph& original, bool after_every_step, Random& random) {
   TrapezoidalGraph graph = original;
   EditLog log(graph);

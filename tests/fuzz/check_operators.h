@@ -1,5 +1,5 @@
-// What must hold of the graph of any rings: the invariants of core/README.md, after any removals,
-// and on the way back.
+// The invariants of core/README.md for the graph of any rings: after any removals, and when these
+// are reverted.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace trapeze::fuzzing {
 
-/// What is done to a graph.
+/// The operations on a graph.
 struct Operations {
   LayerOptions generalization;
-  std::uint32_t seed = 0;             // of the order of removals, and of tolerances
+  std::uint32_t seed = 0;             // for the order of removals and for tolerances
   double greatest_tolerance = 65536;  // cells
   Checks checks = Checks::all;
 };
 
-/// Builds the graph of the rings, removes corners in any order and takes that back, adapts it to
-/// tolerances up and down, and records its history, as far as asked for. Ends the program if an
-/// invariant is broken. The rings, of no more than some hundred points, are used as scratch memory.
+/// Builds the graph of the rings, removes corners in any order and reverts that, adapts the graph
+/// to tolerances up and down, and records its history, as far as requested. Ends the program if an
+/// invariant is broken. The rings, of at most some hundred points, are used as scratch memory.
 void check_operators(Rings& rings, const Operations& operations);
 
 }  // namespace trapeze::fuzzing

@@ -1,5 +1,5 @@
-// Configurations: whatever the text, what is wrong with it is told with line and column, and what
-// is right comes out of `trapeze config print` as it went in.
+// Configurations: errors of any text are reported with line and column, and `trapeze config print`
+// prints a valid configuration with the same values.
 //
 // Input: the text of a TOML file.
 #include <algorithm>
@@ -23,7 +23,7 @@ using fuzzing::require;
 
 const std::string kPath = "fuzz.toml";
 
-/// Variables that configurations may name, and no others, so that findings can be repeated.
+/// Configurations may refer to these variables only, so that findings are reproducible.
 bool set_environment() {
   clearenv();
   setenv("A", "a$\"b\\", 1);
@@ -51,7 +51,7 @@ void check_problem(const ConfigProblem& problem, std::size_t lines) {
   require(number_before(where) >= 1 && where.empty(), "a problem is in no column");
 }
 
-/// A password is not printed, and what is printed in its place may even be read as a path.
+/// A password is not printed, and the text printed in its place may even be read as a path.
 template <typename Owner>
 bool has_password(const Setting<Owner>& setting, const SettingValue& value) {
   if (setting.type != SettingType::path) return false;

@@ -1,10 +1,9 @@
-// From bytes to features that share borders, overlap, touch and leave gaps, to coverages, through
-// tolerances up and down: each is a map at every step, and the one built anew from its faces.
-// The same where what is near each other becomes a block: the void between is filled in sets that
-// hang together, between features of one class only, and no block is smaller than what it is made
-// of.
+// Converts bytes to features that share borders, overlap, touch and leave gaps, builds coverages
+// and adapts them to tolerances up and down. Each is a valid map at every step and equals the one
+// rebuilt from its faces. The same applies with blocks: the void is filled in connected sets,
+// between features of one class only, and no block is smaller than the features it is made of.
 //
-// Input: two bytes of flags, then points of four bytes (x and y of 16 bits); a point with x equal
+// Input: two bytes of flags, then points of four bytes (x and y of 16 bits). A point with x equal
 // to the mark ends a ring, and the feature as well if its y is odd.
 #include <algorithm>
 #include <array>
@@ -34,7 +33,7 @@ using fuzzing::Checks;
 using fuzzing::require;
 
 constexpr std::int16_t kEndOfRing = 0x7fff;
-constexpr std::size_t kMaxPoints = 300;  // the checks are slower than what they check
+constexpr std::size_t kMaxPoints = 300;  // the checks are slower than the checked code
 constexpr std::size_t kMaxFeatures = 12;
 
 struct Input {
@@ -67,7 +66,7 @@ std::vector<Rings> features_from(const std::uint8_t* data, std::size_t size, int
 Input input_from(const std::uint8_t* data, std::size_t size) {
   Input input;
   input.mode = (data[0] & 1) != 0 ? CoverageMode::on : CoverageMode::automatic;
-  // Small numbers bring points together; large ones use the whole grid.
+  // A small scale brings points together; a large one uses the whole grid.
   input.scale = (data[0] & 2) != 0 ? 32768 : 1;
   constexpr std::array<double, 4> kGaps = {0, 0.05, 1, kWidestGap};
   input.close_gaps = kGaps[data[0] >> 2 & 3];
@@ -88,14 +87,14 @@ void require_sound(const TrapezoidalGraph& graph) {
   require(violation.empty(), violation);
 }
 
-/// Bounded places that nothing covers.
+/// Bounded regions that no feature covers.
 std::size_t count_holes(const TrapezoidalGraph& graph) {
   const Regions regions(graph);
   return static_cast<std::size_t>(std::count(regions.face.begin(), regions.face.end(), kOutside)) -
          1;
 }
 
-/// I11: the map is that of the faces that are left.
+/// I11: the map is that of the remaining faces.
 void require_rebuilt(const TrapezoidalGraph& graph) {
   const std::vector<Rings> rings = rings_of_faces(graph);
   std::vector<const Rings*> pointers;
@@ -133,8 +132,8 @@ void check_tolerances(const TrapezoidalGraph& original, const Input& input, cons
   require(adaptable.graph() == original, "I12: forward and back is another graph");
 }
 
-/// What is filled at a distance is a set that ends at sides of at most that. Returns twice the area
-/// of all that is ever filled, if there is a mesh.
+/// The area filled at a distance is a set that ends at sides no longer than that. Returns twice the
+/// area that is ever filled, if there is a mesh.
 std::optional<Int128> check_void(const TrapezoidalGraph& graph,
                                  std::span<const std::uint32_t> class_of_face) {
   VoidMesh mesh(graph);
@@ -158,7 +157,7 @@ std::optional<Int128> check_void(const TrapezoidalGraph& graph,
   return filled;
 }
 
-/// Beside each piece of the void are features of its class only.
+/// Features beside a piece of the void all have its class.
 void check_pieces(const TrapezoidalGraph& graph, const MergePlan& plan) {
   for (std::size_t i = 0; i < graph.edges().size(); ++i) {
     const Edge& edge = graph.edge(EdgeId(i));
@@ -184,7 +183,7 @@ Int128 doubled_area(const TrapezoidalGraph& graph, const MergePlan& plan, bool o
   return sum;
 }
 
-/// What becomes a block loses nothing by that.
+/// Features that become a block lose no area.
 void check_steps(const TrapezoidalGraph& original, const MergePlan& plan) {
   TrapezoidalGraph graph = original;
   EditLog log(graph);
@@ -200,7 +199,7 @@ void check_steps(const TrapezoidalGraph& original, const MergePlan& plan) {
   }
 }
 
-/// Of features of which `graph` is to become blocks.
+/// Checks the blocks of the features of `graph`.
 void check_blocks(const std::vector<const Rings*>& members, const Merging& merging,
                   const CoverageOutcome& outcome, const TrapezoidalGraph& graph,
                   const Input& input) {

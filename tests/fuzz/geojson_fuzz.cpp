@@ -1,8 +1,8 @@
-// From a GeoJSON text, through the reader of all sources, to the graph of each feature, through any
-// removals and back. What becomes of each feature is counted once.
+// Reads a GeoJSON text with the reader of all sources, builds the graph of each feature, applies
+// any removals and reverts them. Each feature is counted once, with its outcome.
 //
-// Input: a byte of flags, then the text. Each is read feature by feature; every second one is also
-// loaded as a layer.
+// Input: a byte of flags, then the text. Each text is read feature by feature; every second one is
+// also loaded as a layer.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -29,9 +29,9 @@ namespace {
 using fuzzing::require;
 
 const std::string kPath = "/vsimem/fuzz.geojson";
-constexpr std::size_t kMaxPoints = 400;  // of a feature; the checks are slower than what they check
+constexpr std::size_t kMaxPoints = 400;  // of a feature; checks are slower than the code
 
-/// A file in memory, which looks at the input.
+/// An in-memory file that refers to the input.
 class MemoryFile {
  public:
   explicit MemoryFile(std::string_view text) : text_(text) {
@@ -46,14 +46,14 @@ class MemoryFile {
   std::string text_;
 };
 
-/// A reference system may be named by an URL: nothing must be fetched here.
+/// A reference system may be given as a URL: nothing must be fetched here.
 void stay_offline() {
   CPLSetConfigOption("GDAL_HTTP_PROXY", "127.0.0.1:9");
   CPLSetConfigOption("GDAL_HTTP_TIMEOUT", "1");
 }
 
-/// Of the formats that GDAL knows only those of JSON are left: most of the time would go into
-/// asking all the others, for each input, whether it is theirs.
+/// Leaves only the JSON drivers of GDAL. Most of the time would otherwise be spent on probing each
+/// input with all the others.
 void leave_only_json() {
   constexpr std::array<std::string_view, 4> kJson = {"GeoJSON", "GeoJSONSeq", "TopoJSON",
                                                      "ESRIJSON"};
@@ -102,7 +102,7 @@ void check_loading() {
           "there are more rows than features");
 }
 
-/// Calls `read`, which may refuse the source as a whole, in words that name it.
+/// Calls `read`, which may refuse the whole source with a message that names it.
 template <typename Read>
 void expect_words(Read read) {
   try {

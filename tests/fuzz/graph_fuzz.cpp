@@ -1,6 +1,7 @@
-// From bytes to rings to a graph, through any removals and back: the invariants hold at every step.
+// Converts bytes to rings, builds their graph, applies any removals and reverts them: the
+// invariants hold at every step.
 //
-// Input: two bytes of flags, then points of four bytes (x and y of 16 bits); a point with x equal
+// Input: two bytes of flags, then points of four bytes (x and y of 16 bits). A point with x equal
 // to the mark ends a ring.
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +13,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::int16_t kEndOfRing = 0x7fff;
-constexpr std::size_t kMaxPoints = 400;  // the checks are slower than what they check
+constexpr std::size_t kMaxPoints = 400;  // the checks are slower than the checked code
 
 Rings rings_from(const std::uint8_t* data, std::size_t size, int scale) {
   Rings rings;
@@ -31,7 +32,7 @@ Rings rings_from(const std::uint8_t* data, std::size_t size, int scale) {
 
 void check(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return;
-  // Small numbers bring points together; large ones use the whole grid.
+  // A small scale brings points together; a large one uses the whole grid.
   const int scale = (data[0] & 1) != 0 ? 32768 : 1;
   fuzzing::Operations operations;
   operations.generalization.topology = (data[0] & 2) != 0 ? Topology::fast : Topology::strict;

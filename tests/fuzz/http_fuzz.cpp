@@ -1,5 +1,5 @@
-// Bytes sent to a server that listens on the loopback address: whatever they are, what comes back
-// is the answers that the server believes to have sent, and it goes on.
+// Sends any bytes to a server that listens on the loopback address: the client receives exactly the
+// responses that the server recorded as sent, and the server keeps running.
 //
 // Input: the bytes of one connection.
 #include <spdlog/spdlog.h>
@@ -30,7 +30,7 @@ namespace {
 
 using fuzzing::require;
 
-constexpr std::size_t kMaxInput = 16384;  // what sockets hold without somebody who reads
+constexpr std::size_t kMaxInput = 16384;  // sockets hold this much without a reader
 
 struct Sent {
   std::string method;
@@ -38,8 +38,8 @@ struct Sent {
   std::size_t bytes;
 };
 
-/// libFuzzer looks at the clock by SIGALRM every few seconds. Calls that it interrupts are to go
-/// on: without this they fail with EINTR, which looks as if the server had hung up.
+/// libFuzzer checks the time with a SIGALRM every few seconds. The interrupted calls must continue:
+/// without this they fail with EINTR, which looks as if the server had closed the connection.
 void go_on_after_alarms() {
   struct sigaction action {};
   require(sigaction(SIGALRM, nullptr, &action) == 0, "no signals");
@@ -47,7 +47,7 @@ void go_on_after_alarms() {
   require(sigaction(SIGALRM, &action, nullptr) == 0, "no signals");
 }
 
-/// A server that answers everything with a few words, and what it has sent.
+/// A server that answers every request with a few words, and records what it has sent.
 class FuzzedServer {
  public:
   FuzzedServer() {
@@ -74,7 +74,7 @@ class FuzzedServer {
     options.address = "127.0.0.1";
     options.port = 0;
     options.threads = 1;
-    // So low that short inputs, which are fast, go beyond them.
+    // So low that short inputs, which are fast, exceed them.
     options.body_limit = 64;
     options.header_limit = 256;
     options.target_limit = 128;
@@ -102,7 +102,7 @@ class FuzzedServer {
     sent_.push_back({answered.request.method, answered.response.status, bytes});
   }
 
-  std::mutex mutex_;  // guards the one below
+  std::mutex mutex_;  // guards sent_
   std::vector<Sent> sent_;
   const std::unique_ptr<HttpServer> server_ = std::make_unique<HttpServer>(
       options(), answer, [this](const Answered& answered) { observe(answered); });
@@ -117,15 +117,15 @@ sockaddr_in loopback(std::uint32_t host, std::uint16_t port) {
   return address;
 }
 
-/// A connection from one of many addresses in turn: a port rests for a minute when its connection
-/// has ended, and one address has too few for thousands a second.
+/// A connection from one of many addresses in turn. A port stays unavailable for a minute after its
+/// connection has ended, and one address has too few ports for thousands a second.
 int connect_to(std::uint16_t port) {
   static std::uint32_t turn = 0;
   const sockaddr_in from = loopback(turn++ % 200, 0);
   const sockaddr_in to = loopback(0, port);
   const int client = socket(AF_INET, SOCK_STREAM, 0);
   require(client >= 0, "no socket");
-  const int late = 1;  // so that ports in use with others will do
+  const int late = 1;  // allows ports that are in use with other peers
   setsockopt(client, IPPROTO_IP, IP_BIND_ADDRESS_NO_PORT, &late, sizeof late);
   require(bind(client, reinterpret_cast<const sockaddr*>(&from), sizeof from) == 0, "no address");
   require(connect(client, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0,
@@ -133,15 +133,16 @@ int connect_to(std::uint16_t port) {
   return client;
 }
 
-/// A connection that sends all and then only listens.
+/// Sends all bytes on a connection, then only receives.
 std::string exchange_bytes(std::uint16_t port, std::string_view bytes) {
   const int client = connect_to(port);
-  // Closed with a reset if the server has not ended it, so that its port need not rest.
+  // Closes with a reset if the server has not closed the connection, so that its port is free
+  // immediately.
   const linger reset{1, 0};
   setsockopt(client, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
   while (!bytes.empty()) {
     const ssize_t count = send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (count <= 0) break;  // the server has heard enough
+    if (count <= 0) break;  // the server has closed its side
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
   shutdown(client, SHUT_WR);
@@ -154,7 +155,7 @@ std::string exchange_bytes(std::uint16_t port, std::string_view bytes) {
   return received;
 }
 
-/// Takes one answer off the beginning of what was received.
+/// Removes one response from the beginning of the received bytes.
 void take_answer(const Sent& sent, std::string_view& received) {
   require(received.starts_with("HTTP/1.1 ") || received.starts_with("HTTP/1.0 "),
           "an answer does not begin as one");

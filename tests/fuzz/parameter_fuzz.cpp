@@ -1,7 +1,7 @@
-// Values of style parameters, the language of filters, colours, dashes and classes among them: what
-// is taken has a text that is taken as the same, and filters treat the two alike.
+// Values of style parameters, including the language of filters, colours, dashes and classes: the
+// text of an accepted value parses to the same value, and filters treat both in the same way.
 //
-// Input: a byte that chooses the parameter, then the text.
+// Input: a byte that selects the parameter, then the text.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -60,7 +60,7 @@ void check_filter(const SharedFilter& filter) {
   const auto again = Filter::parse(filter->text());
   require(again.index() == 0, "the text of a filter is no filter");
   check_same(filter, std::get<0>(again));
-  // What it does not let pass, and does not call unknown, its negation does.
+  // No row passes both a filter and its negation.
   const auto negated = Filter::parse("NOT (" + filter->text() + ")");
   if (negated.index() != 0) return;  // nested too deep, or too long
   const auto bound = BoundFilter::bind(filter, features());

@@ -1,8 +1,8 @@
-// Pictures through the encoder of tiles, and back through libpng: no pixel changes, and nothing
-// becomes much larger than it was.
+// Encodes pictures with the tile encoder and decodes them with libpng: no pixel changes, and no
+// picture becomes much larger than its raw data.
 //
-// Input: width, height, how pixels are made, number of colours, four bytes a colour, then what the
-// pixels are made from: runs of two bytes (length and index), or an index a byte.
+// Input: width, height, how pixels are made, number of colours, four bytes a colour, then the data
+// of the pixels: runs of two bytes (length and index), or one index byte each.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -21,13 +21,12 @@ using fuzzing::require;
 
 constexpr std::size_t kHead = 4;
 constexpr int kMaxSide = 40;
-// For the sake of speed only some inputs can ask for larger pictures, and only some are encoded
-// twice.
+// For speed, only some inputs may request larger pictures, and only some are encoded twice.
 constexpr int kLarger = 8;
 constexpr std::uint32_t kInputsForLarger = 8;
 constexpr std::uint32_t kInputsForTwice = 4;
 
-/// Hands out the bytes of an input, and zeros when there are no more.
+/// Returns the bytes of an input, then zeros.
 class Bytes {
  public:
   explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -64,7 +63,7 @@ Picture picture_from(Bytes bytes, bool can_be_larger) {
   }
   const auto count =
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
-  // With more colours than a palette holds, if so chosen: those of a run shift from pixel to pixel.
+  // Optionally uses more colours than a palette holds: those of a run shift from pixel to pixel.
   while (picture.pixels.size() < count) {
     const std::size_t length = (way & 1) != 0 ? 1 : std::size_t{1} + bytes.next();
     Rgba colour = palette[bytes.next() % colours];
@@ -75,7 +74,7 @@ Picture picture_from(Bytes bytes, bool can_be_larger) {
 }
 
 bool are_same(Rgba a, Rgba b) {
-  return a == b || (a.a == 0 && b.a == 0);  // nobody sees what is wholly transparent
+  return a == b || (a.a == 0 && b.a == 0);  // a wholly transparent colour is invisible
 }
 
 void check(std::span<const std::uint8_t> input) {
@@ -89,7 +88,7 @@ void check(std::span<const std::uint8_t> input) {
   require(decoded.width == picture.width && decoded.height == picture.height,
           "a picture comes back in another size");
   require(std::ranges::equal(picture.pixels, decoded.pixels, are_same), "a pixel has changed");
-  // What cannot be compressed is stored, with a few bytes a block; 1,100 bytes hold a palette.
+  // Incompressible data is stored, with a few bytes per block; 1,100 bytes hold a palette.
   const auto pixels =
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
   const std::size_t raw =

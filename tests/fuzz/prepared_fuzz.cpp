@@ -1,11 +1,12 @@
-// Prepared files that were changed by somebody who also mends the checksums: each is refused, or
-// gives a layer that can be drawn and asked for everything. Where nobody mends them, each change is
-// refused, and each file that is cut short.
+// Prepared files that were changed by somebody who also repairs the checksums: each is refused, or
+// yields a layer that can be drawn and queried in every way. Without repaired checksums every
+// change and every truncation is refused.
 //
 // Input: changes of seven bytes each to a file prepared from a few shapes: where (four bytes, taken
-// modulo its size), how (one byte: set one byte, or a word of four bytes to a small number, to one
-// from the end of the range, or to what stands there plus a little), and what (two bytes). What is
-// left at the end: a byte, odd if nothing is to be mended; then two bytes, where the file is cut.
+// modulo its size), how (one byte: set one byte, or set a word of four bytes to a small number, to
+// one from the end of the range, or to its current value plus a little), and the value (two bytes).
+// The remainder at the end: a byte, odd if nothing is to be repaired, then two bytes with the size
+// to truncate the file to.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,7 +42,7 @@ namespace {
 
 constexpr std::size_t kBytesOfChange = 7;
 constexpr std::size_t kMaxChanges = 16;
-constexpr int kCornerPixels = 24;  // drawn of a tile for most inputs: whole ones take a hundred
+constexpr int kCornerPixels = 24;  // drawn of a tile for most inputs: whole tiles take a hundred
                                    // times as long and lead to the same places
 
 struct alignas(kSectionAlignment) Block {
@@ -101,7 +102,7 @@ void apply_change(const std::uint8_t* change, std::span<std::byte> file) {
   std::memcpy(file.data() + word_at, &word, sizeof word);
 }
 
-/// Makes checksums right and paddings zero, as a forger would, as far as the counts lead.
+/// Corrects checksums and zeroes paddings, as a forger would, as far as the counts are usable.
 void mend_sections(std::span<std::byte> directory, std::span<std::byte> sections) {
   for (std::size_t at = 0; at < directory.size(); at += sizeof(DirectoryEntry)) {
     DirectoryEntry entry;
@@ -139,7 +140,7 @@ void mend(std::span<std::byte> file) {
   std::memcpy(file.data(), &header, sizeof header);
 }
 
-/// The north-western corner of a tile, or all of it.
+/// The north-western corner of a tile, or the whole tile.
 View view_of(int zoom, bool is_whole) {
   const std::uint32_t middle = zoom == 0 ? 0 : 1u << (zoom - 1);
   View view = View::of_tile({zoom, middle, middle}, 1);
@@ -147,7 +148,7 @@ View view_of(int zoom, bool is_whole) {
   return view;
 }
 
-/// The sum over all edges that there are in the mesh.
+/// The sum over all edges of the mesh.
 double lengths_along(const Layer& layer, Level level) {
   double sum = 0;
   for (std::uint32_t edge = 0; edge < layer.mesh().edges.size(); ++edge) {
@@ -157,7 +158,7 @@ double lengths_along(const Layer& layer, Level level) {
   return sum;
 }
 
-/// Everything that a server asks of a layer; what takes longest only for some of the inputs.
+/// All queries that a server makes to a layer; the slowest only for some of the inputs.
 void use(const Layer& layer, std::uint32_t hash) {
   const bool whole_tiles = hash % 16 == 0;
   const bool builds_again = hash / 16 % 8 == 0;
@@ -190,13 +191,13 @@ void use(const Layer& layer, std::uint32_t hash) {
     const std::uint32_t row = layer.feature_of(t);
     if (row != Layer::kNoFeature) bytes += static_cast<std::size_t>(layer.features().id(row));
   }
-  // So that none of the reading is left out.
+  // Prevents the compiler from removing the reads.
   [[maybe_unused]] volatile const std::size_t seen =
       bytes + rings.points.size() +
       (builds_again ? build_without_topology_test(layer)->memory() : layer.memory());
 }
 
-/// What is done to the file when all changes are made.
+/// The final steps after all changes to the file.
 struct Ending {
   bool is_mended = true;
   std::size_t size = 0;

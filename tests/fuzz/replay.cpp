@@ -1,6 +1,6 @@
-// Runs a fuzz harness over inputs that are given: files, or files of folders, and over each of them
-// `--changed N` times with a few bytes changed. And over `--random N` inputs of seeded bytes. What
-// is random is the same in every run.
+// Runs a fuzz harness with the given inputs (files, or the files of folders), then `--changed N`
+// times with a few bytes of each changed, and with `--random N` inputs of seeded random bytes.
+// Random values are the same in every run.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -27,7 +27,7 @@ Bytes read(const std::filesystem::path& path) {
   return Bytes(std::istreambuf_iterator<char>(file), {});
 }
 
-/// The files of a folder, in order; or the file itself.
+/// The files of a folder, in order, or the file itself.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return {path};
   std::vector<std::filesystem::path> files;
@@ -38,7 +38,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
   return files;
 }
 
-/// A few bytes are set, left out, put in, or doubled.
+/// Sets, deletes, inserts or duplicates a few bytes.
 Bytes changed(Bytes bytes, std::mt19937& random) {
   for (auto changes = 1 + random() % 3; changes > 0; --changes) {
     const std::size_t at = bytes.empty() ? 0 : random() % bytes.size();
@@ -81,7 +81,7 @@ void run_random(int count) {
   for (int seed = 0; seed < count; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     Bytes bytes(2 + random() % 400);
-    // Many inputs of few different values: points meet, lie level and in line.
+    // Many inputs have few different values: points coincide, lie level and are collinear.
     const unsigned range = seed % 3 == 0 ? 256 : seed % 3 == 1 ? 16 : 4;
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       const bool is_high_byte = i >= 2 && i % 2 == 1;

@@ -1,7 +1,7 @@
-// Targets, as clients send them: whatever they are, they are decoded strictly, refused in words, or
-// become a plan; and each plan has one canonical target, which leads to the same picture.
+// Request targets, as clients send them: each is decoded strictly, then refused with a message or
+// turned into a plan. Each plan has one canonical target, which leads to the same picture.
 //
-// Input: lines of a target, a Host, an If-None-Match and an X-Forwarded-For. Missing ones are
+// Input: lines of a target, a Host, an If-None-Match and an X-Forwarded-For. Missing lines are
 // empty.
 #include <array>
 #include <cstddef>
@@ -42,7 +42,7 @@ struct Input {
   const std::string& forwarded_for() const { return lines[3]; }
 };
 
-/// A style of the configuration with something for one layer, as `style=night`.
+/// A configured style with a setting for one layer, as `style=night`.
 const StyleBook& styles() {
   static const StyleBook book({{"night", *parse_style_document(
                                              R"({"fill": "navy", "land.stroke": "#fff8",
@@ -122,7 +122,7 @@ void check_tiles(const std::string& target) {
   const auto& request = *parsed;
   const std::string canonical =
       std::visit([](const auto& tiles) { return canonical_target(tiles); }, request);
-  // Written in full it may be longer than any target can be.
+  // The canonical form may be longer than any target may be.
   if (canonical.size() > kMaxTargetLength) return;
   const auto parsed_again = parse_tiles_target(*split_target(canonical), styles());
   require(bool{parsed_again}, "a canonical target is refused");

@@ -1,4 +1,4 @@
-// Layers to ask for, made in memory: as small as they can be and still have everything.
+// In-memory layers to request: as small as possible, but with every kind of content.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 namespace trapeze::fuzzing {
 
 /// "land": twelve polygons from a few cells to half of the world, some with a hole, with the
-/// properties "name" (text), "rank" (integer, sometimes null) and "size" (real). "water": two
-/// polygons without properties, drawn at the zooms 1 to 6, whose "stroke" is locked.
+/// attributes "name" (text), "rank" (integer, sometimes null) and "size" (real). "water": two
+/// polygons without attributes, drawn at the zooms 1 to 6, with a locked "stroke".
 std::shared_ptr<const Dataset> sample_layers();
 
 }  // namespace trapeze::fuzzing

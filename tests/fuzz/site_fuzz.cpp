@@ -1,8 +1,8 @@
-// A whole site, from the request to the bytes of its answer: whatever is asked, the answer is right
-// for its status and type, and none tells of an error of the server.
+// A whole site, from the request to the bytes of its response. For any request, the response
+// matches its status and type, and none reports an internal server error.
 //
-// Input: a line of method and target, a line of Host, a line of If-None-Match; the rest is the
-// body.
+// Input: a line with method and target, a line with the Host, a line with If-None-Match; the rest
+// is the body.
 #include <spdlog/spdlog.h>
 #include <algorithm>
 #include <array>
@@ -31,7 +31,7 @@ namespace {
 using fuzzing::require;
 using nlohmann::json;
 
-/// Draws on one thread, and keeps a few tiles.
+/// Renders with one thread, and caches a few tiles.
 class FuzzedSite {
  public:
   FuzzedSite() {
@@ -146,7 +146,7 @@ void check_response(const HttpResponse& response) {
   check_body(response);
 }
 
-/// The layer is drawn by the values of a table that was posted, or it is said why not.
+/// The layer is drawn by the values of a posted table, or the response gives a reason.
 void check_table(FuzzedSite& site, const std::string& id, const HttpRequest& request) {
   for (const char* rest : {"&join=name&color-by=value&breaks=jenks:4&ramp=Reds",
                            "&join=rank&color-by=value&classes=*:red&filter=value+IS+NULL"}) {
@@ -159,7 +159,7 @@ void check_table(FuzzedSite& site, const std::string& id, const HttpRequest& req
   }
 }
 
-/// Who has it already is told so; a style or a table that was posted is there.
+/// A client that already has the content gets 304; a posted style or table exists.
 void check_again(FuzzedSite& site, const HttpRequest& request, const HttpResponse& response) {
   if (response.status == 201) {
     const std::string location(response.header("Location"));

@@ -1,5 +1,5 @@
-// Bodies of POST /styles: each is refused in words, or is a style whose document, whose query and
-// whose id lead back to itself.
+// Bodies of POST /styles: each is refused with a message, or is a style whose document, query and
+// id lead back to the same style.
 //
 // Input: the body.
 #include <algorithm>
@@ -48,7 +48,7 @@ void check_document(const StyleQuery& style) {
 
 void check_query(const StyleQuery& style) {
   const auto pairs = decode_query(style.canonical_text());
-  // Control characters cannot stand in a URL, and so not in what is posted either.
+  // A URL cannot contain control characters, so neither can a posted style.
   require(pairs.has_value(), "the query of a style cannot be decoded");
   const auto again = StyleQuery::parse(*pairs, layers_of(style));
   require(bool{again}, "the query of a style is refused");
@@ -69,7 +69,7 @@ void check_id(const StyleQuery& style) {
   require(named && named->pairs() == style.pairs(), "a posted style differs");
 }
 
-/// The settings of one layer as a configuration has them: for all layers, without its name.
+/// The settings of one layer as in a configuration: for all layers, without its name.
 StyleQuery settings_of(const StyleQuery& style, const std::string& layer) {
   std::vector<QueryPair> pairs;
   for (const StyleSetting& setting : style.settings()) {

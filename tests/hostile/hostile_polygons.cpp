@@ -13,7 +13,7 @@ using Features = std::vector<HostileFeature>;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// One feature of one polygon, whose rings these are.
+/// One feature with one polygon of these rings.
 Features polygon(LonLatPolygon rings) {
   return {{.parts = {std::move(rings)}}};
 }
@@ -22,7 +22,7 @@ Features ring(LonLatRing ring) {
   return polygon({std::move(ring)});
 }
 
-/// One feature, a part for each ring.
+/// One feature, with a part for each ring.
 Features parts(const std::vector<LonLatRing>& rings) {
   HostileFeature feature;
   for (const LonLatRing& ring : rings) feature.parts.push_back({ring});
@@ -54,7 +54,7 @@ std::vector<LonLatRing> copies(const LonLatRing& ring, int count, double east = 
   return all;
 }
 
-/// Three squares, of which the middle one has that position as a corner.
+/// Three squares; the middle one has that position as a corner.
 Features ring_with(LonLat position) {
   LonLatRing wrong = square(0, 0, 1);
   wrong[2] = position;
@@ -84,7 +84,7 @@ std::vector<LonLatRing> slivers_side_by_side(int count, double length, double th
   return copies(sliver(length, thickness, radians), count, 2 * thickness, 10 * thickness);
 }
 
-/// Rectangles over each other, some along and some across.
+/// Overlapping rectangles, some along and some across.
 std::vector<LonLatRing> weave(int count) {
   std::vector<LonLatRing> strips;
   for (int i = 0; i < count; ++i) {
@@ -96,7 +96,7 @@ std::vector<LonLatRing> weave(int count) {
   return strips;
 }
 
-/// Both sides of a border wander by less than a cell.
+/// Both sides of a border meander by less than a cell.
 std::vector<LonLatRing> neighbours_that_nearly_touch(int points) {
   LonLatRing left{{-1, 0}};
   LonLatRing right{{1, 0}};
@@ -128,7 +128,7 @@ Features joined(Features a, const Features& b) {
 
 // clang-format off
 const HostileInput kInputs[] = {
-    // Nothing, or hardly anything.
+    // Empty or nearly empty sources.
     {"NoFeatures", [] { return Features(); }},
     {"NoGeometry", [] { return Features(5); }},
     {"EmptyPolygon", [] { return wkt({"POLYGON EMPTY", "MULTIPOLYGON EMPTY", "GEOMETRYCOLLECTION EMPTY"}); }},
@@ -153,7 +153,7 @@ const HostileInput kInputs[] = {
     {"TenThousandPolygonsOfOneCell", [] { return apart(lattice_of_squares(100, 1e-3, 2 * kCellDegrees)); }},
     {"OneEdgeOfACell", [] { return ring({{0, 0}, {60, 60}, {60 + kCellDegrees, 60}}); }},
 
-    // Numbers that are none, and the ends of the earth.
+    // Values that are not numbers, and coordinates at the ends of the earth.
     {"NaN", [] { return ring_with({kNaN, 1}); }},
     {"NaNLatitude", [] { return ring_with({1, kNaN}); }},
     {"Infinity", [] { return ring_with({kInfinity, 1}); }},

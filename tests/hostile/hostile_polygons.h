@@ -1,5 +1,5 @@
-// Sources that nobody should have to load: what a wrong program, a broken file or an attacker could
-// write as polygons.
+// Sources that nobody should have to load: polygons that a faulty program, a broken file or an
+// attacker could produce.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace trapeze {
 
 struct HostileFeature {
   std::vector<LonLatPolygon> parts = {};
-  std::string wkt = {};  // in place of parts, for what is no polygon of straight edges
+  std::string wkt = {};  // instead of parts, for all but polygons of straight edges
   std::string text = {};
 };
 

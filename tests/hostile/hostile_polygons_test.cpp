@@ -1,4 +1,4 @@
-// Loads what is hostile as any source is loaded, and draws what comes of it.
+// Loads hostile input like any other source, and draws the result.
 #include "tests/hostile/hostile_polygons.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ namespace {
 
 using ::testing::StartsWith;
 
-// What a layer may hold, however wrong its source is; a little dust is kept in full.
+// The memory that a layer may use, however faulty its source is; a little dust is kept in full.
 constexpr std::size_t kMostBytesAVertex = 1000;
 constexpr std::size_t kMostBytesBeside = std::size_t{16} << 20;
 
@@ -77,7 +77,7 @@ void write(const std::string& path, const char* crs, const std::vector<HostileFe
   }
 }
 
-/// The whole layer in a picture.
+/// A picture of the whole layer.
 View view_of(const Box& bounds) {
   const auto width = static_cast<double>(std::int64_t{bounds.max_x} - bounds.min_x);
   const auto height = static_cast<double>(std::int64_t{bounds.max_y} - bounds.min_y);
@@ -111,7 +111,7 @@ void expect_memory_is_bounded(const LoadedLayer& loaded) {
 
 class HostilePolygonsTest : public ::testing::TestWithParam<HostileInput> {
  protected:
-  /// Nothing if the source was refused, in words.
+  /// Empty if the source was refused with a message.
   LoadedLayer load(CoverageMode coverage) const {
     LoadOptions options;
     options.generalization.coverage = coverage;

@@ -34,7 +34,7 @@ LonLatRing ribbon(const LonLatRing& line, double width) {
   return left;
 }
 
-/// The cell of Hilbert's curve of 4^order cells.
+/// The cell of Hilbert's curve over 4^order cells.
 std::pair<int, int> hilbert_cell(int order, int index) {
   int x = 0;
   int y = 0;

@@ -57,7 +57,7 @@ Distance compare(const Picture& picture, const Comparison& comparison) {
       for (std::size_t i = 0; i < drawn.size(); ++i) {
         off = std::max(off, std::abs(drawn[i] - truth[i]));
         distance.sum += std::abs(drawn[i] - truth[i]);
-        // Of colours that are not opaque, opacity is rounded as well.
+        // Opacity is rounded as well unless colours are opaque.
         const double bound = comparison.is_opaque ? 0.51 : 1.51;
         is_equal = is_equal && std::abs(drawn[i] - truth[i]) <= bound;
       }

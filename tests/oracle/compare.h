@@ -14,15 +14,15 @@ namespace trapeze::oracle {
 struct Distance {
   std::size_t pixels = 0;
   double sum = 0;                     // over all pixels and channels
-  std::size_t plainly_different = 0;  // pixels of which a channel is off by more than 64
+  std::size_t plainly_different = 0;  // pixels with a channel that is off by more than 64
   std::size_t inner = 0;              // pixels away from all edges
   std::size_t inner_different = 0;
   double worst = 0;
   std::string worst_place;  // tile, column, row
   std::string first_inner_place;
 
-  double mean() const;   // of all channels
-  double share() const;  // of pixels that are plainly different
+  double mean() const;   // over all channels
+  double share() const;  // pixels that are plainly different
   void add(const Distance& other);
 };
 
@@ -33,7 +33,7 @@ struct Comparison {
   std::string place;
 };
 
-/// A picture that is not as large as a tile is wholly different.
+/// A picture that does not have the size of a tile counts as wholly different.
 Distance compare(const Picture& picture, const Comparison& comparison);
 
 }  // namespace trapeze::oracle

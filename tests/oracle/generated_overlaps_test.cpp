@@ -1,4 +1,4 @@
-// The pictures of polygons that lie over each other in every way are true.
+// The pictures of polygons that overlap in every way are true.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -18,10 +18,10 @@
 namespace trapeze::oracle {
 namespace {
 
-constexpr TileName kTile{12, 2144, 1434};  // that all of them lie in
+constexpr TileName kTile{12, 2144, 1434};  // contains all shapes
 const std::array<std::string, 4> kKinds = {"field", "wood", "lake", "town"};
 
-/// In pixels of that tile.
+/// In pixels of kTile.
 using Ring = std::vector<Place>;
 struct Shape {
   std::vector<Ring> rings;
@@ -29,7 +29,7 @@ struct Shape {
 };
 
 double uniform(std::mt19937& random, double from, double to) {
-  // Not by a distribution: those differ between standard libraries.
+  // No std distribution is used: these differ between standard libraries.
   return from + (to - from) * static_cast<double>(random()) / 4294967296.0;
 }
 
@@ -56,7 +56,7 @@ Place any_place(std::mt19937& random) {
   return {uniform(random, 10, 246), uniform(random, 10, 246)};
 }
 
-// Every draw is a statement: compilers evaluate arguments in different orders.
+// Every random number has its own statement: compilers evaluate arguments in different orders.
 Shape any_star(std::mt19937& random, double least_radius, double greatest_radius) {
   const Place centre = any_place(random);
   const double radius = uniform(random, least_radius, greatest_radius);
@@ -72,7 +72,7 @@ std::vector<Shape> stars_over_each_other(std::mt19937& random) {
   return shapes;
 }
 
-/// Each in the one before, some with a hole in which the next one lies.
+/// Each shape lies in the one before; some have a hole that contains the next one.
 std::vector<Shape> nested(std::mt19937& random) {
   std::vector<Shape> shapes;
   for (int column = 0; column < 3; ++column) {
@@ -93,7 +93,7 @@ std::vector<Shape> nested(std::mt19937& random) {
   return shapes;
 }
 
-/// Plots with common borders, each drawn by chance once.
+/// Plots with shared borders, each drawn at random once.
 std::vector<Shape> neighbours(std::mt19937& random) {
   constexpr int kPlots = 6;
   constexpr int kPieces = 8;  // of a border
@@ -146,7 +146,8 @@ std::vector<Shape> neighbours(std::mt19937& random) {
   return shapes;
 }
 
-/// Over each other with sides in common: halves and copies of what is below, and neighbours of it.
+/// Overlapping shapes with shared sides: halves and copies of the shapes below, and their
+/// neighbours.
 std::vector<Shape> coincident(std::mt19937& random) {
   std::vector<Shape> shapes;
   for (int i = 0; i < 12; ++i) {
@@ -199,7 +200,7 @@ std::string geojson_of(const std::vector<Shape>& shapes) {
   return out.str();
 }
 
-/// A file as long as it lives.
+/// A file that exists as long as the object.
 class ShapeFile {
  public:
   ShapeFile(const std::string& name, const std::vector<Shape>& shapes)
@@ -222,12 +223,12 @@ class ShapeFile {
   std::string path_;
 };
 
-/// The tile, one that holds it, and one in it.
+/// The tile, one that contains it, and one inside it.
 const std::array<TileName, 3> kTiles = {kTile, TileName{kTile.zoom - 1, kTile.x / 2, kTile.y / 2},
                                         TileName{kTile.zoom + 1, 2 * kTile.x + 1, 2 * kTile.y}};
 
-// Where lines are nearer to each other than they are wide, the greatest value of a pixel counts,
-// not what they cover together (see render/mask/stroke.h).
+// Where lines are closer together than they are wide, the greatest value of a pixel counts, not
+// their joint coverage (see render/mask/stroke.h).
 constexpr Limits kLines{1.3, 0.0022};
 
 const std::vector<Exception> kExceptions = {
@@ -258,7 +259,7 @@ TEST_P(GeneratedOverlapsTest, AreTrueInEveryStyle) {
   const TrueLayer layer = read_layer(file.path(), "kind");
   Program off({file.path()}, CoverageMode::off);
   Program automatic({file.path()}, CoverageMode::automatic);
-  Program on({file.path()}, CoverageMode::on);  // in one graph, with places in common
+  Program on({file.path()}, CoverageMode::on);  // in one graph, with shared faces
   HeldToTruth held({{"shapes"},
                     {&layer},
                     {{"coverage off", &off}, {"coverage auto", &automatic}, {"coverage on", &on}}});
@@ -270,7 +271,7 @@ TEST_P(GeneratedOverlapsTest, AreTrueAsTwoLayers) {
   const auto& [kind, seed] = GetParam();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
-  // Every other one in the upper layer: they lie over each other and side by side.
+  // Every other shape is in the upper layer, so the layers' shapes overlap and lie side by side.
   std::vector<Shape> lower;
   std::vector<Shape> upper;
   for (const Shape& shape : kind.make(random)) {

@@ -28,7 +28,7 @@ Limits limits_of(const std::string& layers, const std::string& text,
   return {};
 }
 
-/// Of one style, over all zooms.
+/// For one style, over all zooms.
 struct Worst {
   double mean = 0;
   double share = 0;

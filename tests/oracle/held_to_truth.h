@@ -1,4 +1,4 @@
-// Pictures of some layers, held to the truth.
+// Pictures of some layers, compared with the truth.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@
 
 namespace trapeze::oracle {
 
-/// What is compared: layers of the program and the oracle's, the lowest one first.
+/// The compared objects: layers of the program and of the oracle, the lowest one first.
 struct Subject {
   std::vector<std::string> names;
   std::vector<const TrueLayer*> layers;
-  std::map<std::string, Program*> programs;  // by what tells them apart: "coverage auto"
+  std::map<std::string, Program*> programs;  // by a label: "coverage auto"
 };
 
-/// How far off all tiles of one program, one style and one zoom may be, taken together.
+/// Limits on the distance of all tiles of one program, one style and one zoom, taken together.
 struct Limits {
   double mean = 1;
   double share = 0.0005;
@@ -32,8 +32,8 @@ class HeldToTruth {
  public:
   explicit HeldToTruth(Subject subject) : subject_(std::move(subject)) {}
 
-  /// Compares a tile in all styles, by all programs. Of a single layer, one in a few of the
-  /// features there is highlighted; of two, styles are those of the pair.
+  /// Compares a tile in all styles and for all programs. With a single layer, a few of the features
+  /// there are highlighted; with two layers, the styles are those of the pair.
   void look_at(TileName name, const TrueClasses& classes);
 
   struct Case {
@@ -53,14 +53,14 @@ class HeldToTruth {
 /// "coverage auto, classes, zoom 12"
 std::string text_of(const HeldToTruth::Case& one);
 
-/// Where the usual limits cannot be kept: in the cases of some layers whose texts contain that.
+/// Exceptions from the usual limits: for cases of some layers with a text that contains `cases`.
 struct Exception {
   std::string layers;
   std::string cases;
   Limits limits;
 };
 
-/// Expects every case to be within the limits, which are those of the first exception that applies;
+/// Expects every case to be within its limits, which are those of the first exception that applies,
 /// and prints the worst of each style.
 void expect_true(const HeldToTruth& held, const std::string& layers,
                  std::span<const Exception> exceptions);

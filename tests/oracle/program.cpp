@@ -44,7 +44,7 @@ std::string text_of(TileName name) {
 
 std::string path_of(TileName name, Map map) {
   if (map == Map::mercator) return text_of(name);
-  // The square has a quarter of its rows beyond either pole.
+  // A quarter of the rows of the square lies beyond each pole.
   return "WorldCRS84Quad/" + text_of({name.zoom - 1, name.x, name.y - (1u << (name.zoom - 2))});
 }
 

@@ -1,4 +1,4 @@
-// Pictures as the server answers with them, without a socket, drawn in plain C++.
+// Pictures as the server returns them, without a socket, rendered in plain C++.
 #pragma once
 
 #include <memory>
@@ -14,14 +14,15 @@ namespace trapeze::oracle {
 
 class Program {
  public:
-  /// Serves the files as layers of their names, drawn in that map.
+  /// Serves the files as layers named after them, in that map.
   Program(const std::vector<std::string>& files, CoverageMode coverage, Map map = Map::mercator);
-  /// Built for a reference system besides.
+  /// Also built for a reference system.
   Program(const std::vector<std::string>& files, const std::string& system);
 
-  /// Of layers, the lowest one first; empty, with a failure of the test, if there is none.
+  /// The layers are given with the lowest one first. Returns an empty picture, and fails the test,
+  /// if there is none.
   Picture tile(const std::vector<std::string>& layers, TileName name, const std::string& query);
-  /// What stands between "/map/" and the style: "malta.png?crs=EPSG:4326&bbox=...".
+  /// `target` is the part between "/map/" and the style: "malta.png?crs=EPSG:4326&bbox=...".
   Picture map(const std::string& target, const std::string& query);
 
  private:
@@ -32,7 +33,7 @@ class Program {
 };
 
 std::string text_of(TileName name);
-/// As URLs have it. In degrees zoom is at least 2, and the tile between the poles.
+/// The path in URLs. In degrees, zoom is at least 2 and the tile lies between the poles.
 std::string path_of(TileName name, Map map);
 
 }  // namespace trapeze::oracle

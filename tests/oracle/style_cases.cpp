@@ -24,7 +24,7 @@ const Named kYellow{"ffcc00", of_bytes(0xff, 0xcc, 0x00)};
 const Named kBlack{"000000", of_bytes(0, 0, 0)};
 const Named kWhite{"ffffff", of_bytes(0xff, 0xff, 0xff)};
 const Named kOther{"808080", of_bytes(0x80, 0x80, 0x80)};
-// In turn, for the commonest values.
+// Assigned in turn to the commonest values.
 const std::array<Named, 4> kClassColours = {
     Named{"e41a1c", of_bytes(0xe4, 0x1a, 0x1c)}, Named{"4daf4a", of_bytes(0x4d, 0xaf, 0x4a)},
     Named{"377eb8", of_bytes(0x37, 0x7e, 0xb8)}, Named{"f0e442", of_bytes(0xf0, 0xe4, 0x42)}};

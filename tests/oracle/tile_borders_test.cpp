@@ -1,4 +1,4 @@
-// Colours that were let become one in each tile by itself show no seam where tiles meet.
+// Colours that are merged separately in each tile show no seam where tiles meet.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace trapeze::oracle {
 namespace {
 
-/// Layers of one place, and a tile of zoom 16 with much in it.
+/// Layers of one place, and a tile of zoom 16 with many features.
 struct Place {
   std::vector<std::string> layers;
   TileName tile;
@@ -30,13 +30,13 @@ const std::vector<Place> kPlaces = {
 constexpr int kFirstZoom = 7;
 constexpr int kLastZoom = 16;
 
-/// Premultiplied, of 255.
+/// Premultiplied, from 0 to 255.
 double channel(Rgba colour, std::size_t i) {
   const std::array<std::uint8_t, 4> channels{colour.r, colour.g, colour.b, colour.a};
   return i == 3 ? colour.a : channels[i] * colour.a / 255.0;
 }
 
-/// How much more or less two pixels differ than in the exact picture, in the mean of all channels.
+/// How much more or less two pixels differ than in the exact picture, averaged over all channels.
 class Steps {
  public:
   void add(Rgba one, Rgba other, Rgba exact_one, Rgba exact_other) {

@@ -23,11 +23,11 @@ double area_of(const std::vector<Place>& places) {
   return std::abs(doubled) / 2;
 }
 
-/// Where the rings of a source lie on the square.
+/// Maps the rings of a source to the square.
 class Projection {
  public:
   virtual ~Projection() = default;
-  /// Whether polygons that lie in these longitudes and latitudes are wanted.
+  /// Whether polygons with these longitudes and latitudes are needed.
   virtual bool wants(const OGREnvelope&) const { return true; }
   virtual std::vector<Place> places_of(const OGRLinearRing& ring) const = 0;
 };
@@ -91,7 +91,7 @@ class OnPlane : public Projection {
     return {(x - plane_.west) / plane_.side, (plane_.north - y) / plane_.side};
   }
 
-  /// Halves an edge as long as its middle is off the chord, or it is long.
+  /// Halves an edge until its middle is on the chord and it is short.
   void append_between(Place from, Place to, Place start, Place end,
                       std::vector<Place>& places) const {
     const Place half{(from.x + to.x) / 2, (from.y + to.y) / 2};

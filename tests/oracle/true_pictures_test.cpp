@@ -1,4 +1,4 @@
-// The pictures of real layers are true, at every zoom and in every style.
+// The pictures of real layers are true at every zoom and in every style.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr int kFirstZoomInDegrees = 4;
 /// Layers of one place, the lowest one first.
 struct Real {
   std::vector<const char*> names;
-  const char* attribute = "type";  // that classes are made by
+  const char* attribute = "type";  // determines the classes
 };
 
 std::string name_of(const Real& real) {
@@ -61,7 +61,7 @@ TileName tile_around(Place place, int zoom) {
   return {zoom, number(place.x), number(place.y)};
 }
 
-/// A place inside a feature, half way down it; none where its rings are empty.
+/// A position inside a feature, halfway down; none where its rings are empty.
 std::optional<Place> place_inside(const TrueFeature& feature) {
   for (const TruePart& part : feature.parts) {
     const double y = (part.bounds.min_y + part.bounds.max_y) / 2;
@@ -83,15 +83,15 @@ std::optional<Place> place_inside(const TrueFeature& feature) {
 
 constexpr Limits kLines{1, 0.002};
 
-// What is off there is about four fifths of these limits.
+// The actual distances are about four fifths of these limits.
 const std::vector<Exception> kExceptions = {
-    // As below, and seen from farther away, zooms 4 and 6, where coasts are denser.
+    // As below, and smaller scales, zooms 4 and 6, where coasts are denser.
     {"europe_countries", "degrees, classes and outline", {2, 0.0026}},
     {"europe_countries", "degrees, outline", {1.3, 0.002}},
-    // A line that is a quarter of a pixel off is off by up to half of its ink. And where lines are
-    // nearer to each other than they are wide, the greatest value of a pixel counts, not what they
-    // cover together (see render/mask/stroke.h). Lines of features that are narrower than the
-    // tolerance are not hidden by what lies over them.
+    // A line that is off by a quarter of a pixel loses up to half of its ink. Where lines are
+    // closer together than they are wide, the greatest value of a pixel counts, not their joint
+    // coverage (see render/mask/stroke.h). Lines of features that are narrower than the tolerance
+    // are not hidden by features over them.
     {"europe_countries", "outline", kLines},
     {"kobroor", "outline", kLines},
     {"lands_complex", "outline", kLines},
@@ -103,9 +103,9 @@ const std::vector<Exception> kExceptions = {
     {"melbourne_natural", "outline", {2.3, 0.0045}},
     {"shenzhen_buildings", "outline", {4, 0.003}},
     {"melbourne_landuse", "outline", {9, 0.031}},
-    // Where polygons by the thousand are hardly larger than a pixel, or hardly a pixel apart,
-    // nearly every pixel has edges that are up to a quarter of a pixel off, and errors of that size
-    // add up.
+    // Where thousands of polygons are hardly larger than a pixel, or hardly a pixel apart, nearly
+    // every pixel has edges that are up to a quarter of a pixel off, and errors of that size add
+    // up.
     {"melbourne_landuse", "", {2.3, 0.0012}},
     {"shenzhen_buildings", "", {1.8, 0.0009}},
     {"malta_landuse_under_malta_natural", "", {1, 0.0007}},
@@ -132,8 +132,8 @@ class RealLayers {
     return all;
   }
 
-  /// Where there is something: around a vertex, and inside a feature, of the upper layer; of deep
-  /// zooms in turn. The same on every machine.
+  /// Tiles with content: around a vertex, and inside a feature, of the upper layer; at deep zooms
+  /// in turn. They are the same on every machine.
   std::vector<TileName> tiles(int zoom) {
     const std::vector<TrueFeature>& features = layers_.back().features;
     const Place vertex = vertices_[random_() % vertices_.size()];
@@ -198,7 +198,7 @@ INSTANTIATE_TEST_SUITE_P(Layers, TrueInDegreesTest,
                                            Real{{"usa48_land", "us_counties"}}),
                          [](const auto& test) { return name_of(test.param); });
 
-/// Pixels around which, two pixels wide, every point is covered.
+/// Pixels with every point covered within two pixels around them.
 std::vector<std::pair<int, int>> pixels_within(const TruePicture& picture) {
   constexpr int kAround = 2;
   std::vector<std::pair<int, int>> within;

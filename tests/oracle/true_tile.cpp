@@ -8,21 +8,21 @@
 namespace trapeze::oracle {
 namespace {
 
-// Points around the tile are looked at, too: edges there may be hidden, and have lines that reach
-// in.
+// Points around the tile are sampled, too: edges there may be hidden, and have lines that reach
+// into the tile.
 constexpr int kMargin = 3 * kPerPixel;
 constexpr int kPoints = kPixels * kPerPixel + 2 * kMargin;  // along a side
-// What hides lines is looked at at every second point.
+// Hidden lines are determined at every second point.
 constexpr int kTopStep = 2;
 constexpr int kTops = kPoints / kTopStep;
 
-// In points from the north-western corner of all that is looked at; point k lies at k + 0.5.
+// In points from the north-western corner of the sampled area; point k lies at k + 0.5.
 struct Edge {
   Place from;
   Place to;
 };
 
-/// The first point that does not lie before a place.
+/// The first point that does not lie before a position.
 int first_from(double place) {
   return static_cast<int>(std::clamp(std::ceil(place - 0.5), 0.0, static_cast<double>(kPoints)));
 }
@@ -38,7 +38,7 @@ void visit_around(const Edge& edge, double radius, int rows, const Visit& visit)
   const double bottom = std::max(edge.from.y, edge.to.y) + radius;
   const int first = std::max(0, static_cast<int>(std::ceil(std::max(top, 0.0) - 0.5)));
   const int last = static_cast<int>(std::floor(std::min(bottom, rows + 1.0) - 0.5));
-  // The corners of the rectangle around the edge, one after the other.
+  // The corners of the rectangle around the edge, in order.
   const double nx = length > 0 ? -dy / length * radius : 0;
   const double ny = length > 0 ? dx / length * radius : 0;
   const std::array<Place, 4> corners = {
@@ -79,12 +79,12 @@ PixelSum over(const PixelSum& above, const PixelSum& below) {
   return sum;
 }
 
-/// Adds up the points of pixels, in memory of the caller.
+/// Adds up the points of pixels, in memory provided by the caller.
 class Sums {
  public:
   explicit Sums(std::vector<PixelSum>& sums) : sums_(sums) { sums.assign(2 * kSize, PixelSum{}); }
 
-  /// Points of a row that have one colour.
+  /// Adds points of a row that have the same colour.
   void add(int row, int begin, int end, const PixelSum& colour) {
     row -= kMargin;
     begin = std::max(begin - kMargin, 0);
@@ -122,11 +122,11 @@ class Sums {
  private:
   static constexpr std::size_t kColumns = kPixels + 1;
   static constexpr std::size_t kSize = kColumns * kPixels;
-  // What pixels at the ends of spans have; then what all pixels from there on have.
+  // First the values of pixels at the ends of spans, then those of all pixels from there on.
   std::vector<PixelSum>& sums_;
 };
 
-/// How inked every point is, from 0 to 255.
+/// The ink of every point, from 0 to 255.
 using Ink = std::vector<std::uint8_t>;
 /// The number of the topmost opaque feature at every second point, counted from 1; 0 if there is
 /// none.
@@ -136,7 +136,7 @@ std::size_t index_of(int row, int column) {
   return static_cast<std::size_t>(row) * kPoints + static_cast<std::size_t>(column);
 }
 
-/// Where an outline enters or leaves a part, in order of rows and then of columns.
+/// Where an outline enters or leaves a part, ordered by row, then by column.
 struct Crossing {
   std::uint32_t row_and_column;
   std::uint32_t part;
@@ -157,7 +157,7 @@ struct TrueTile::Scene {
     const TrueFeature* source;
     std::size_t layer;
   };
-  /// What a style makes of the features.
+  /// The fills of the features in a style.
   struct Fills {
     struct Fill {
       PixelSum colour;
@@ -291,7 +291,7 @@ struct TrueTile::Scene {
     return sum;
   }
 
-  /// Of the features of one layer.
+  /// For the features of one layer.
   void find_top(std::size_t layer, const Fills& fills, Top& top) const {
     top.assign(static_cast<std::size_t>(kTops) * kTops, 0);
     visit_spans([&](int row, int begin, int end, const Actives& actives) {
@@ -350,8 +350,8 @@ struct TrueTile::Scene {
     return (a.x == b.x && (a.x == 0 || a.x == 1)) || (is_pole(a) && is_pole(b));
   }
 
-  /// Calls visit(edge) for the pieces of an edge that is_over(x, y) leaves: at which nothing lies
-  /// over it on one side, or both.
+  /// Calls visit(edge) for the visible pieces of an edge: those where is_over(x, y) is false on at
+  /// least one side.
   template <typename IsOver, typename Visit>
   static void visit_seen(const Edge& edge, double radius, const IsOver& is_over,
                          const Visit& visit) {
@@ -407,10 +407,10 @@ struct TrueTile::Scene {
   }
 };
 
-// A picture of one style in the making.
+// A picture of one style while it is painted.
 class TrueTile::Painting {
  public:
-  /// `inks` are those that others need; one is added for each layer with lines.
+  /// `inks` counts those that other paintings need; one is added for each layer with lines.
   Painting(const Scene& scene, const std::vector<TruePaint>& paints, Workspace& workspace,
            std::size_t& inks, std::vector<PixelSum>& sums)
       : paints_(paints), fills_(scene.fills_of(paints)), sums_(sums) {
@@ -461,13 +461,13 @@ class TrueTile::Painting {
     return sum;
   }
 
-  /// Up to where all points are inked like the first one.
+  /// The end of the run of points that have the same ink as the first one.
   int end_of_run(int row, int begin, int end) const {
     for (const std::uint8_t* const ink : ink_) {
       if (ink == nullptr) continue;
       const std::uint8_t* const line = ink + index_of(row, 0);
       int next = begin + 1;
-      // Eight at once as long as they are equal.
+      // Compares eight points at a time as long as they are equal.
       const std::uint64_t same = line[begin] * std::uint64_t{0x0101010101010101};
       for (std::uint64_t eight = same; next + 8 <= end; next += 8) {
         std::memcpy(&eight, line + next, sizeof eight);
@@ -522,7 +522,7 @@ std::vector<TruePicture> TrueTile::paint(std::span<const std::vector<TruePaint>>
                                          Workspace& workspace) const {
   std::vector<Painting> paintings;
   std::size_t inks = 0;
-  workspace.ink.reserve(styles.size() * scene_->layer_count);  // they stay in place
+  workspace.ink.reserve(styles.size() * scene_->layer_count);  // pointers to them stay valid
   if (workspace.sums.size() < styles.size()) workspace.sums.resize(styles.size());
   for (std::size_t i = 0; i < styles.size(); ++i) {
     paintings.emplace_back(*scene_, styles[i], workspace, inks, workspace.sums[i]);

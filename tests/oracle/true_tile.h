@@ -1,7 +1,7 @@
-// The truth that tiles are held to: what source polygons look like, by looking at 16 x 16 points of
-// every pixel. Of the features at a point those later in the source lie over those before, raised
-// ones over all others; upper layers lie over lower ones. The colour of a pixel is the mean of its
-// points, premultiplied.
+// The truth for comparison with tiles: how source polygons look, determined at 16 x 16 points of
+// every pixel. Among the features at a point, later ones of the source lie over earlier ones, and
+// raised ones over all others; upper layers lie over lower ones. The colour of a pixel is the mean
+// of its points, premultiplied.
 //
 // It shares no code with the program.
 #pragma once
@@ -30,7 +30,7 @@ struct TileName {
   friend bool operator==(const TileName&, const TileName&) = default;
 };
 
-/// A square of the map, which a picture of kPixels x kPixels pixels shows.
+/// A square of the map, shown by a picture of kPixels x kPixels pixels.
 struct Window {
   Place corner;  // the north-western one
   double side = 1;
@@ -52,13 +52,13 @@ struct TrueFill {
   bool is_raised = false;  // over all that are not
 };
 
-/// How a layer is painted: its fills, its outlines over them, both opaque by as much.
+/// How a layer is painted: its fills, and its outlines over them, both with the same opacity.
 ///
-/// A point is inked if an edge is no farther away than half the width of the line that is seen, and
-/// by as much as the most inked of these. An edge is seen as far as the inside of its feature
-/// beside it is: where an opaque feature lies over that, it is hidden. Rings smaller than four
-/// times the width have less ink, in proportion to their extent; edges along the edges of the world
-/// have none.
+/// A point is inked if an edge is no farther away than half the width of the visible line, and with
+/// the strongest ink of these edges. An edge is visible as far as the inside of its feature beside
+/// it is: where an opaque feature covers that, the edge is hidden. Rings smaller than four times
+/// the width have less ink, in proportion to their extent. Edges along the edges of the world have
+/// none.
 struct TruePaint {
   std::function<TrueFill(const TrueFeature&)> fill_of;
   double opacity = 1;
@@ -77,15 +77,15 @@ struct TruePicture {
   }
 };
 
-/// Memory for painting, to be used again from tile to tile. For one thread.
+/// Memory for painting, to be reused from tile to tile by one thread.
 struct Workspace {
   std::vector<std::uint32_t> top;
   std::vector<std::vector<std::uint8_t>> ink;
   std::vector<std::vector<PixelSum>> sums;
 };
 
-/// The part of some layers, the lowest one first, that a tile or another window shows. Refers to
-/// the layers.
+/// The part of some layers, the lowest one first, that a tile or another window shows. Keeps
+/// references to the layers.
 class TrueTile {
  public:
   TrueTile(std::span<const TrueLayer* const> layers, TileName name);
@@ -93,14 +93,14 @@ class TrueTile {
   ~TrueTile();
   TrueTile(TrueTile&&) noexcept;
 
-  /// A picture for each style; a style has a paint for every layer.
+  /// Returns a picture for each style; a style has a paint for every layer.
   std::vector<TruePicture> paint(std::span<const std::vector<TruePaint>> styles,
                                  Workspace& workspace) const;
 
-  /// Row by row, whether an edge of any feature is within `distance` of the middle of a pixel.
+  /// For each pixel, row by row, whether an edge of any feature is within `distance` of its middle.
   std::vector<bool> near_edges(double distance) const;
 
-  /// Features of a layer with an inside in the tile or near it, as the source has them.
+  /// The source features of a layer whose inside is in the tile or near it.
   std::vector<const TrueFeature*> features(std::size_t layer) const;
 
  private:

@@ -1,8 +1,8 @@
-// Windows of any place and scale are true, in seven systems: Web Mercator, degrees, the grids of
+// Windows of any place and scale are true in seven systems: Web Mercator, degrees, the grids of
 // Switzerland, Britain, the Netherlands and Europe, and a polar one.
 //
-// A few of each are looked at, or as many in all as the variable TRAPEZE_ORACLE_WINDOWS says:
-// 10000.
+// A few windows of each system are tested, or as many in all as the variable TRAPEZE_ORACLE_WINDOWS
+// specifies, for example 10000.
 #include <gtest/gtest.h>
 #include <spdlog/fmt/fmt.h>
 
@@ -32,14 +32,14 @@ constexpr int kUsualWindows = 5;  // of each grid
 constexpr double kInside = 2;     // pixels away from all edges
 constexpr double kHalfOfMercator = 20037508.342789244;
 
-/// A system, and a layer in it.
+/// A reference system, and a layer in it.
 struct Grid {
   Plane plane;
   Bounds wanted;  // in units of the plane: windows are around vertices in that
   const char* layer;
-  const char* where;  // which of its features, in SQL; all if it is empty
+  const char* where;  // selects its features, in SQL; all if it is empty
   const char* attribute;
-  double finest = 1;  // units to a pixel
+  double finest = 1;  // units per pixel
   double coarsest = 1;
   bool has_outlines = true;
 };
@@ -84,8 +84,7 @@ const std::vector<Grid> kGrids = {
      "iso_a3",
      1,
      200},
-    // An outline would be drawn along the antimeridian by the oracle, which knows of edges and not
-    // of seams.
+    // The oracle would draw an outline along the antimeridian, as it knows edges and not seams.
     {{"EPSG:5042", -4'000'000, 8'000'000, 12'000'000, {-180, -90, 180, -60}, 0.02},
      {-1'000'000, -1'000'000, 5'000'000, 5'000'000},
      "lands_complex",
@@ -116,7 +115,7 @@ TrueLayer read(const Grid& grid, const std::string& file) {
   return read_layer_on(grid.plane, file, grid.attribute);
 }
 
-/// Some features of a source as one of their own.
+/// Copies some features of a source to a new one.
 std::string copy_of(const std::string& source, const char* where, const std::string& path) {
   const GDALDatasetUniquePtr from(
       GDALDataset::Open(source.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
@@ -165,7 +164,7 @@ class TrueWindowsTest : public ::testing::TestWithParam<Grid> {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
 
-  /// Around a vertex, at a scale that is as likely as all others.
+  /// Around a random vertex, at a scale from a log-uniform distribution.
   Window random_window() {
     const Grid& grid = GetParam();
     const double pixel = std::exp(random(std::log(grid.finest), std::log(grid.coarsest)));

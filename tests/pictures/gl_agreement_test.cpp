@@ -1,4 +1,4 @@
-// GL draws real layers as the software renderer does.
+// GL draws real layers like the software renderer.
 #include <gtest/gtest.h>
 
 #include <algorithm>

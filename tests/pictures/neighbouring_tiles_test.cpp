@@ -1,4 +1,4 @@
-// Tiles put together are one picture: no seam shows where they meet.
+// Adjacent tiles form one picture: no seam shows where they meet.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ void draw(const RealLayer& real, const View& view, MaskRenderer& renderer, Mask&
   renderer.draw(real.layer->mesh(), ranges, view, out);
 }
 
-/// The four tiles of the next zoom that make up `tile`, as one mask.
+/// The four tiles of the next zoom that make up `tile`, joined in one mask.
 Mask put_together(const RealLayer& real, const TileId& tile, MaskRenderer& renderer) {
   std::array<std::vector<std::uint8_t>, 4> quarters;
   for (std::uint32_t i = 0; i < 4; ++i) {

@@ -57,10 +57,10 @@ std::vector<TileId> tiles_around_vertices(const RealLayer& real, int zoom, int c
   std::vector<TileId> tiles;
   if (points.empty()) return tiles;
   std::mt19937 random(seed);
-  // Where there are fewer tiles than wanted, the same ones come up again and again, until those
-  // with few vertices have come up too.
+  // Where there are fewer tiles than requested, the loop continues with repeated tiles until those
+  // with few vertices have occurred too.
   for (int i = 0; i < 256 * count && static_cast<int>(tiles.size()) < count; ++i) {
-    // Not by a distribution: those differ between standard libraries.
+    // No std distribution is used: these differ between standard libraries.
     const TileId tile = tile_around(points[random() % points.size()], zoom);
     if (std::ranges::find(tiles, tile) == tiles.end()) tiles.push_back(tile);
   }

@@ -1,5 +1,5 @@
-// The real layers that pictures are tested on: every FlatGeobuf file of the folder that the
-// environment variable TRAPEZE_DATA names.
+// The real layers for picture tests: every FlatGeobuf file of the folder named by the environment
+// variable TRAPEZE_DATA.
 #pragma once
 
 #include <cstdint>
@@ -23,19 +23,18 @@ struct RealLayer {
   TrueOutlines outlines;
 };
 
-/// Loaded when first asked for and kept until the process ends; null for kNoData. For one thread.
+/// Loaded on first use and kept until the process ends; null for kNoData. For use by one thread.
 const RealLayer* real_layer(const std::string& name);
 
-/// At most `count` different tiles, each around a vertex chosen by chance, which depends on the
-/// seed alone.
+/// At most `count` different tiles, each around a random vertex, which depends on the seed only.
 std::vector<TileId> tiles_around_vertices(const RealLayer& real, int zoom, int count,
                                           std::uint32_t seed);
 
 /// "12/3340/1811"
 std::string text_of(const TileId& tile);
 
-/// What the server draws of a layer if a request says nothing: a quarter of a pixel of tolerance,
-/// small polygons as dust.
+/// What the server draws of a layer by default: a tolerance of a quarter of a pixel, small polygons
+/// as dust.
 Layer::Selection default_selection(const View& view);
 
 }  // namespace trapeze::testing

@@ -1,4 +1,4 @@
-// The one GL renderer of a test program.
+// The single GL renderer of a test program.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 namespace trapeze::testing {
 
 struct SharedGl {
-  std::unique_ptr<MaskRenderer> renderer;  // by EGL or by OSMesa; null if neither works here
-  std::string reasons;                     // why not
+  std::unique_ptr<MaskRenderer> renderer;  // with EGL or OSMesa; null if neither works here
+  std::string reasons;                     // why there is no renderer
 };
 
-/// Made when first asked for. For one thread.
+/// Created on first use. For use by one thread.
 const SharedGl& shared_gl();
 
 }  // namespace trapeze::testing

@@ -1,5 +1,5 @@
-// Nobody can see that tiles are drawn from simplified polygons: they are as near to the truth as
-// the eye can tell, and have neither holes nor spikes.
+// The simplification of tiles is invisible: they are indistinguishable from the truth by eye, and
+// have neither holes nor spikes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,16 +19,16 @@ constexpr int kTilesPerZoom = 24;
 
 constexpr int kPlainlyDifferent = 64;  // 255ths
 
-/// What the pictures of a zoom, taken together, may be off the truth.
+/// How far the pictures of a zoom, taken together, may be from the truth.
 struct Bounds {
   double mean;   // absolute difference, in 255ths
-  double share;  // of the pixels that are plainly different
+  double share;  // of plainly different pixels
 };
 constexpr Bounds kDetailed{1.0, 0.0005};
-// The means are lower here, at most 0.6, but where neighbours share borders that are simplified
-// each for itself, small gaps open: of counties of two pixels 0.1 % of all pixels are off.
+// The means are lower here, at most 0.6. However, where neighbours share borders that are
+// simplified separately, small gaps open: with counties of two pixels 0.1 % of all pixels are off.
 constexpr Bounds kOverview{0.8, 0.0012};
-// The truth is sampled too, so that even what is not simplified is a little off.
+// The truth is sampled too, so even unsimplified layers are a little off.
 constexpr Bounds kUntouched{0.25, 0.0};
 
 /// How far pictures are from the truth.
@@ -51,7 +51,7 @@ int apart(const Mask& truth, const Mask& drawn, int column, int row) {
 }
 
 /// A pixel that is full in one picture and less than half full in the other, or empty and more than
-/// half full, while all eight around it are much the same.
+/// half full, while all eight pixels around it are similar.
 bool is_hole_or_spike(const Mask& truth, const Mask& drawn, int column, int row) {
   const int was = truth.at(column, row);
   const int is = drawn.at(column, row);
@@ -89,7 +89,7 @@ class SimplificationTest : public ::testing::TestWithParam<std::string> {
     if (real_ == nullptr) GTEST_SKIP() << "TRAPEZE_DATA does not name a folder of .fgb files";
   }
 
-  /// Of the tiles of one zoom, drawn as `select` says; prints a line of the table.
+  /// For the tiles of one zoom, drawn with the selection of `select`; prints a line of the table.
   template <class Select>
   Distance measure(int zoom, const char* what, const Select& select) {
     Distance distance;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSamples = kSamplesPerSide * kSamplesPerSide;
 
-/// The sample points of a picture: rows and columns of them, at the middles of squares.
+/// The sample points of a picture: rows and columns at the middles of squares.
 class SampleGrid {
  public:
   explicit SampleGrid(const View& view)
@@ -19,7 +19,7 @@ class SampleGrid {
         columns_(view.width * kSamplesPerSide),
         rows_(view.height * kSamplesPerSide) {}
 
-  /// The first row that is not above `y`, 0 at least, the number of rows at most.
+  /// The first row that is not above `y`, at least 0 and at most the number of rows.
   int row_from(double y) const { return first_from(y - offset(view_.origin_y), rows_); }
   int column_from(double x) const { return first_from(x - offset(view_.origin_x), columns_); }
   double y_of_row(int row) const { return offset(view_.origin_y) + (row + 0.5) * cells_; }
@@ -61,8 +61,8 @@ void append_crossings(Point a, Point b, const SampleGrid& grid, std::vector<Cros
   }
 }
 
-/// Counts of sample points inside, by pixel; of the pixels wholly within a span only the steps at
-/// its ends are kept.
+/// Counts of inside sample points, by pixel. For pixels wholly within a span, only the steps at its
+/// ends are stored.
 class Counts {
  public:
   Counts(int width, int height)

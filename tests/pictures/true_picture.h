@@ -1,5 +1,5 @@
-// The truth that pictures are compared with: the unsimplified outlines of a layer, sampled at 16 x
-// 16 points a pixel. Shares no code with core's trapezoids nor with render's areas.
+// The truth for comparison with pictures: the unsimplified outlines of a layer, sampled at 16 x 16
+// points a pixel. Shares no code with core's trapezoids or render's areas.
 #pragma once
 
 #include <cstddef>
@@ -21,12 +21,12 @@ class TrueOutlines {
   TrueOutlines() = default;
   explicit TrueOutlines(const Layer& layer);
 
-  /// The next feature: inside is even-odd over its rings.
+  /// Adds the next feature; the inside is even-odd over its rings.
   void add(const Rings& rings);
 
   /// The share of each pixel's sample points that lie inside, summed over features, at most 1. A
-  /// point on the boundary is inside where the polygon is right of it or below. The view is at
-  /// most 4095 pixels wide and high.
+  /// point on the boundary is inside if the polygon is right of it or below. The view is at most
+  /// 4095 pixels wide and high.
   Mask draw(const View& view) const;
 
   const std::vector<Point>& points() const { return points_; }
@@ -34,7 +34,7 @@ class TrueOutlines {
  private:
   struct Feature {
     Box box;
-    std::size_t rings_end;  // in ring_ends_
+    std::size_t rings_end;  // index into ring_ends_
   };
 
   std::vector<Point> points_;  // of all rings of all features

@@ -62,7 +62,7 @@ TEST(TruePictureTest, FeaturesAddUpToAWholePixelAtMost) {
 }
 
 TEST(TruePictureTest, ASlantedEdgeIsSampledWithinASamplesWidth) {
-  // Half of the pixel, and of the points on the diagonal all or none.
+  // Half of the pixel; the points on the diagonal are all inside or all outside.
   const Mask picture = outlines_of({{{80, 0}, {160, 80}, {80, 80}}}).draw(small_view());
   EXPECT_NEAR(picture.at(1, 0), 128, 16);
   EXPECT_EQ(picture.at(0, 0), 0);

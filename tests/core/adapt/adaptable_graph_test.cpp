@@ -126,7 +126,8 @@ TEST(AdaptableGraph, FastRemovalKeepsTheLinksWhole) {
 }
 
 TEST(AdaptableGraph, RingsThatHookIntoEachOtherGoInTheEnd) {
-  // Each has a corner in the bay of the other, so that all four of finite weight are blocked.
+  // Each ring has a corner in the bay of the other, so that all four corners with a finite weight
+  // are blocked.
   const auto graph = graph_of(
       rings_from_text("3 0, 15 10, 0 16394, 2580 0; 5 3847, -256 -1, 2815 -32512, -2816 -2"));
   ASSERT_TRUE(graph);
@@ -137,8 +138,8 @@ TEST(AdaptableGraph, RingsThatHookIntoEachOtherGoInTheEnd) {
   EXPECT_EQ(adaptable.graph(), *graph);
 }
 
-/// Douglas-Peucker written the plain way, on one ring with the anchors of the weights: the
-/// uppermost point and the farthest from it.
+/// A straightforward Douglas-Peucker on one ring, with the anchors that the weights use: the
+/// uppermost point and the point farthest from it.
 class PlainDouglasPeucker {
  public:
   PlainDouglasPeucker(std::span<const Point> ring, double epsilon)
@@ -177,7 +178,7 @@ class PlainDouglasPeucker {
       if (d == farthest) ties.push_back(k);
     }
     if (between.empty() || farthest < epsilon_) return;
-    // Of equals the one nearest the middle, then the uppermost.
+    // Among equals, the one nearest the middle, then the uppermost.
     const auto off_middle = [&](std::size_t k) { return std::max(k + 1, between.size() - k); };
     std::size_t best = ties[0];
     for (const std::size_t k : ties) {

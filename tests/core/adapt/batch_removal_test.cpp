@@ -16,7 +16,8 @@ namespace {
 
 constexpr unsigned kSeeds = ::trapeze::testing::kIsSanitized ? 1 : 3;
 
-/// The points from a to b, without b: the middle is moved sideways, and so on in both halves.
+/// The points from a to b, without b. The midpoint is moved sideways, and both halves are divided
+/// in the same way.
 void add_coast(std::mt19937& random, Point a, Point b, int halvings, std::vector<Point>& points) {
   if (halvings == 0) return points.push_back(a);
   const double by = std::uniform_real_distribution<>(-0.2, 0.2)(random);
@@ -37,7 +38,7 @@ void add_square(std::mt19937& random, Point at, std::int32_t width, int halvings
   rings.close_ring();
 }
 
-/// A land with a long coast and lakes, among islands of all sizes.
+/// A land mass with a long coast and lakes, among islands of all sizes.
 Rings archipelago(unsigned seed) {
   std::mt19937 random(seed);
   Rings rings;
@@ -51,7 +52,7 @@ Rings archipelago(unsigned seed) {
   return rings;
 }
 
-/// Lands that share their borders, one of them around islands.
+/// Land masses that share borders, one of them around islands.
 std::vector<Rings> lands(unsigned seed) {
   constexpr int kAcross = 4;
   constexpr int kHalvings = 10;

@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-/// By looking at all vertices; the ties as they are promised.
+/// Tests every vertex; resolves ties as documented.
 FarthestVertex::Found by_looking_at_all(const std::vector<Point>& ring, std::size_t begin,
                                         std::size_t end) {
   const auto at = [&](std::size_t i) { return ring[i % ring.size()]; };
@@ -34,8 +34,8 @@ void expect_same_on_random_pieces(const std::vector<Point>& ring, unsigned seed)
   FarthestVertex farthest;
   farthest.assign(ring);
   std::mt19937 random(seed);
-  // Enough of them for the tree to come into use: in the first hundred or so all vertices are
-  // looked at.
+  // Enough ranges to make the tree come into use: the first hundred or so searches test every
+  // vertex.
   for (int piece = 0; piece < 300; ++piece) {
     const std::size_t begin = random() % ring.size();
     const std::size_t end = begin + 2 + random() % (ring.size() - 1);
@@ -58,7 +58,7 @@ TEST(FarthestVertex, IsThatOfLookingAtAllInEveryFamily) {
 TEST(FarthestVertex, IsThatOfLookingAtAllOnRandomPoints) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     std::mt19937 random(seed);
-    // Small ranges make ties, large ones come near the ends of the grid.
+    // Small ranges produce ties, large ones reach the ends of the grid.
     const std::int32_t reach = seed % 3 == 0 ? 5 : seed % 3 == 1 ? 10000 : kGridMax;
     std::uniform_int_distribution<std::int32_t> at(-reach, reach);
     std::vector<Point> ring(100 + random() % 1500);
@@ -89,7 +89,7 @@ TEST(FarthestVertex, ForgetsTheRingBefore) {
   }
 }
 
-/// A convex polygon from its top along the right side.
+/// A convex polygon, from its top along the right side.
 std::vector<Point> convex(std::size_t corners) {
   const Rings rings = spiky_star(2 * corners);
   std::vector<Point> hull;

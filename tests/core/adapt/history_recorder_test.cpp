@@ -95,7 +95,8 @@ TEST(History, SidesOfTrapezoidsAndHorizontalEdgesAreTheWholeBoundaryAtEveryLevel
   EXPECT_GT(horizontal_edges, 100U);
 }
 
-// Rings of rays that reach from the middle to a circle: each is beside all that begin farther out.
+// Rings of spikes that reach from the middle to a circle: each ring lies beside all rings that
+// begin farther out.
 Rings star(std::size_t rays) {
   Rings rings;
   for (std::size_t i = 0; i < 2 * rays; ++i) {
@@ -120,10 +121,10 @@ TEST(History, EndsEarlyWhereEveryRemovalChangesThousandsOfTrapezoids) {
   EXPECT_GT(*reached, 0);
   const PriorityStack::Counts& counts = recorder.stack().counts();
   EXPECT_GT(counts.removals, 1000U);
-  // The last removal is the one with which the limit was passed.
+  // The last removal is the one that exceeded the limit.
   EXPECT_LT(counts.touched + counts.walked,
             HistoryRecorder::most_work(120'000) + graph.nodes().size());
-  // What is left at the coarsest level is the polygon that the graph has come to.
+  // The coarsest level shows the polygon that the graph has reached.
   EXPECT_EQ(boundary_at(history, kLastLevel), boundary_of(graph));
   EXPECT_GT(boundary_of(graph).size(), 1000U);
 }
@@ -243,7 +244,7 @@ TEST(Dust, LongGrainsHaveManyMotesOnlyWhereTheyAreFew) {
   grains.resize(20'000, sliver);
   EXPECT_EQ(most_motes_of(grains, 60'000), 8);
   EXPECT_EQ(most_motes_of(grains, 2'000'000), kMostMotes) << "once they had many vertices";
-  // Those of a pixel have one mote in any case.
+  // The slivers of a pixel share one mote in any case.
   grains.assign(1'000'000, {{{0, 0}, {1, 1}}, 4, 1});
   grains.resize(1'000'200, sliver);
   EXPECT_EQ(most_motes_of(grains, 3'000'600), kMostMotes);
@@ -259,8 +260,8 @@ TEST(Dust, FewerMotesHaveTheSameArea) {
 }
 
 TEST(Layer, DustOfAGreatToleranceIsMotesWithinPixelsAndLaterBirthsBeyond) {
-  // Two squares of ten cells, twenty apart: gone at a tolerance of 64, in one pixel of 64 cells,
-  // but not in pixels of 8.
+  // Two squares of ten cells, twenty apart: both are gone at a tolerance of 64, in one pixel of 64
+  // cells, but in different pixels of 8 cells.
   std::vector<LayerBuilder> builders(1);
   FeatureTable features(std::vector<Field>{});
   Rings first = rings_from_text("0 0, 10 0, 10 10, 0 10");

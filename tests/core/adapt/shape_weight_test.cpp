@@ -30,7 +30,7 @@ std::vector<double> weigh(const Points& points, Line line) {
   return weights;
 }
 
-/// The points of a ring that are left at a tolerance.
+/// The points of a ring that remain at a tolerance.
 Points left_of(const Points& ring, double tolerance) {
   const std::vector<double> weights = weigh(ring, Line::ring);
   Points left;
@@ -40,7 +40,7 @@ Points left_of(const Points& ring, double tolerance) {
   return left;
 }
 
-/// The weights in ascending order, each once.
+/// The distinct weights in ascending order.
 std::vector<double> steps_of(const Points& points, Line line = Line::ring) {
   std::set<double> steps;
   for (const double weight : weigh(points, line)) {
@@ -75,7 +75,8 @@ TEST(ShapeWeights, ABumpGoesAtOneToleranceAndLeavesTheRectangle) {
   for (const double degrees : {0.0, 17.0, 45.0, 80.0}) {
     const Points bump = turned(kBump, degrees);
     const std::vector<double> steps = steps_of(bump);
-    // Turned, the wall is straight to a cell only, and the ends of the bump go a little later.
+    // In a rotated ring, the wall is straight only to within a cell, and the ends of the bump are
+    // removed a little later.
     const double after = steps.front() * 1.001;
     EXPECT_EQ(left_of(bump, after), turned(kRectangle, degrees)) << degrees;
     EXPECT_EQ(left_of(bump, steps.front()), bump) << degrees;
@@ -125,11 +126,11 @@ TEST(ShapeWeights, ARightAngleCountsMoreThanOneNearlyRight) {
 }
 
 TEST(ShapeWeights, OfTwoVerticesOnBothSidesOfTheNewBoundaryBothTrianglesCount) {
-  // A low step, halved by the new boundary: flat, and no right angle of its walls is lost.
+  // A low step, halved by the new boundary: it is flat, and no right angle of its walls is lost.
   EXPECT_NEAR(cost_of_pair({0, 0}, {10000, 0}, {10000, 100}, {20000, 100}), 500000 * 0.2575, 7000);
-  // A step as high as its walls are long: they are.
+  // A step as high as its walls are long: its right angles are lost.
   EXPECT_DOUBLE_EQ(cost_of_pair({0, 0}, {100, 0}, {100, 100}, {200, 100}), 4 * 5000);
-  // A bump on one side: a square.
+  // A square bump on one side.
   EXPECT_DOUBLE_EQ(cost_of_pair({0, 0}, {0, 100}, {100, 100}, {100, 0}), 10000);
 }
 
@@ -151,7 +152,7 @@ TEST(ShapeWeights, CostsAreTheSameFromBothSides) {
   }
 }
 
-/// By looking at everything again and again.
+/// Recomputes everything after every step.
 std::vector<double> weights_the_plain_way(const Points& points, Line line) {
   std::vector<double> weights(points.size(), kInfinite);
   std::vector<std::size_t> left;

@@ -35,7 +35,7 @@ bool has_repeated_points(std::span<const Point> ring) {
   return points.size() < ring.size();
 }
 
-/// Rings without repeated points, of all kinds.
+/// Rings of all kinds, without repeated points.
 std::vector<Ring> rings_to_weigh() {
   std::vector<Ring> found;
   for (unsigned seed = 0; seed < 140; ++seed) {
@@ -48,8 +48,8 @@ std::vector<Ring> rings_to_weigh() {
   return found;
 }
 
-/// Binary recursive partitioning written the plain way: for every vertex its distance from the
-/// chord that it splits, and the vertex that split the piece before.
+/// A straightforward binary recursive partitioning: for every vertex, its distance from the chord
+/// that it splits, and the vertex that split the previous piece.
 class Partitioning {
  public:
   explicit Partitioning(const Ring& ring)
@@ -71,7 +71,7 @@ class Partitioning {
   }
 
   std::vector<double> distance;
-  std::vector<std::size_t> parent;  // ring.size() for those without
+  std::vector<std::size_t> parent;  // ring.size() for vertices without one
   std::vector<std::size_t> order;   // parents before children
 
  private:
@@ -131,11 +131,11 @@ TEST(Figure2, NoChildOutweighsItsParentSoBothDistanceRulesAgree) {
             weigh(kFigure2, WeightRule::raised_parents));
 }
 
-// Where a child lies farther from its chord than its parent from its own, one rule lowers the
-// child, the other, Eq. (1), raises the parent.
+// Where a child is farther from its chord than its parent is from its own, one rule lowers the
+// child; the other, Eq. (1), raises the parent.
 TEST(VertexWeights, AChildFartherThanItsParentIsLoweredOrTheParentRaised) {
-  // The second splits the first and the last at a distance of 30; the third is 45 from what is
-  // left.
+  // The second vertex splits the first and the last at a distance of 30; the third is 45 from the
+  // remaining chord.
   const Ring ring{{0, 0}, {50, 30}, {5, 25}, {100, 0}};
   const Partitioning tree(ring);
   bool found = false;
@@ -189,7 +189,7 @@ TEST(VertexWeights, RaisedParentsAreTheGreatestDistanceBelowThem) {
   }
 }
 
-/// Visvalingam and Whyatt by looking at all triangles again and again.
+/// Visvalingam and Whyatt, recomputing all triangles after every step.
 std::vector<double> areas_the_plain_way(const Ring& ring) {
   std::vector<double> w(ring.size(), kInfinite);
   std::vector<std::size_t> left;

@@ -71,7 +71,7 @@ TEST(CoverageFaults, AHoleOfOneFeatureIsNoGap) {
               IsEmpty());
 }
 
-// A place, what covers it, and whether noding may have moved an edge over it.
+// A position, the features that cover it, and whether noding may have moved an edge over it.
 class Cover {
  public:
   Cover(double x, double y) : x_(x), y_(y) {}
@@ -153,7 +153,7 @@ TEST(CoverageFaults, AreAsManyGapsAsTheCoverageHas) {
     const std::vector<Rings> features = random_coverage(seed);
     const CoverageFaults found = find_faults(pointers_to(features));
     for (const CoverageFault& fault : found.faults) EXPECT_FALSE(fault.polygons.empty()) << seed;
-    if (count(found, FaultKind::overlap) > 0) continue;  // a gap may touch what is covered twice
+    if (count(found, FaultKind::overlap) > 0) continue;  // a gap may touch an overlap
     TrapezoidalGraph graph;
     CoverageBuilder builder;
     const CoverageOutcome outcome = builder.build(pointers_to(features), {}, graph);

@@ -107,7 +107,7 @@ TEST(CoverageGroups, TiesReachFromNeighbourToNeighbour) {
 }
 
 TEST(CoverageGroups, WhatOverlapsByTooMuchStaysApart) {
-  // A house on the right square, which it has an edge in common with.
+  // A building on the right square, with which it shares an edge.
   Features features({kLeft10, kRight10, "20 0, 20 10, 12 10, 12 0"});
   const Assembly assembly = features.assembly(CoverageMode::automatic);
   EXPECT_THAT(assembly.together, ElementsAre(0, 1));
@@ -128,7 +128,7 @@ TEST(CoverageGroups, TheOneWithTheFewestNeighboursIsLeftOut) {
 }
 
 TEST(CoverageGroups, WhatIsThereTwiceDoesNotCostTheMotherland) {
-  // The left one has two islands, which are there as features as well.
+  // The left feature has two islands, which are also features of their own.
   Features features({"0 0, 10 0, 10 10, 0 10; 50 0, 55 0, 55 5; 60 0, 65 0, 65 5", kRight10,
                      "50 0, 55 0, 55 5", "60 0, 65 0, 65 5"});
   const Assembly assembly = features.assembly(CoverageMode::automatic);
@@ -158,8 +158,8 @@ TEST(CoverageGroups, ParcelsThatAreThereTwiceCostOneOfEachPair) {
 }
 
 TEST(CoverageGroups, OverlapsOfAHeapOfFeaturesAreExact) {
-  // Rectangles from one corner, each over all the others, so that i and k overlap by the smaller
-  // height and width of both.
+  // Rectangles from one corner, each overlapping all the others, so that i and k overlap by the
+  // smaller height and the smaller width of the two.
   constexpr int kCount = 120;
   std::vector<std::string> texts;
   for (int i = 0; i < kCount; ++i) {
@@ -185,7 +185,7 @@ TEST(CoverageGroups, TooManyOverEachOtherStayApartInWords) {
 }
 
 TEST(CoverageGroups, TooManyWithinEachOtherStayApartInWords) {
-  // Squares around each other: each feature lies over all the smaller ones.
+  // Nested squares: each feature overlaps all the smaller ones.
   std::vector<std::string> texts;
   for (int i = 1; i <= 4200; ++i) texts.push_back(rectangle(-i, -i, 2 * i, 2 * i));
   const Assembly assembly = Features(texts).assembly(CoverageMode::on);
@@ -193,7 +193,7 @@ TEST(CoverageGroups, TooManyWithinEachOtherStayApartInWords) {
   EXPECT_EQ(assembly.apart.size(), texts.size());
 }
 
-/// A comb with teeth to the right, or, turned, downwards.
+/// A comb with teeth to the right or, if turned, downwards.
 Rings comb(std::int32_t teeth, bool is_turned) {
   Rings rings;
   const std::int32_t length = 20 * teeth;
@@ -220,7 +220,7 @@ TEST(CoverageGroups, WhatCrossesTooOftenStaysApartInWords) {
   EXPECT_EQ(many.apart.size(), 2u);
 }
 
-/// Sectors of a circle that meet in its middle.
+/// Sectors of a circle that meet at its centre.
 std::vector<Rings> sectors(int count) {
   const auto at = [count](int i) {
     const double angle = 2 * std::numbers::pi * i / count;
@@ -251,7 +251,7 @@ TEST(CoverageGroups, OneThatIsLeftAloneIsNoCoverage) {
   EXPECT_THAT(assembly.apart, ElementsAre(0, 1));
 }
 
-/// Stars of which dozens lie over each other everywhere.
+/// Stars that overlap each other by the dozen everywhere.
 std::vector<Rings> crowd() {
   std::mt19937 random(1);
   std::uniform_int_distribution<std::int32_t> place(-1'000'000, 1'000'000);
@@ -288,7 +288,7 @@ TEST(CoverageGroups, ACrowdOfNothingElseIsNoCoverage) {
   EXPECT_EQ(many.apart.size(), 65u);
 }
 
-/// A layer of a coverage, all of whose features are to be together.
+/// A coverage layer with all features in one group.
 std::unique_ptr<Layer> layer_of(const std::vector<Rings>& features) {
   LayerOptions options;
   options.coverage = CoverageMode::on;
@@ -305,7 +305,7 @@ std::unique_ptr<Layer> layer_of(const std::vector<Rings>& features) {
   return LayerBuilder::join(builders, std::move(table));
 }
 
-/// Twice the area between the edges of trapezoids and boxes of dust, by sign.
+/// Twice the area between the edges of trapezoids and dust boxes, signed.
 double area_of(const MeshView& mesh, std::span<const TrapezoidRange> ranges) {
   double area = 0;
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
@@ -381,7 +381,7 @@ TEST(CoverageLayer, DustOfAllFeaturesTogetherMakesUpForWhatIsDrawn) {
       const TrapezoidRange one{i, 1};
       areas[layer->feature_of(i)] += area_of(layer->mesh(), std::span(&one, 1));
     });
-    // At the end nothing is drawn, and the dust of each feature is what it was.
+    // At the last level nothing is drawn, and the dust of each feature equals its original area.
     std::vector<double> dust(areas.size(), 0);
     layer->grains().visit(kWorld, GrainIndex::Births{}, [&](const FeatureGrain& grain) {
       dust[grain.row] += static_cast<double>(grain.doubled_area) / 2;

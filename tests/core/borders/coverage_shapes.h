@@ -1,5 +1,4 @@
-// Random coverages for property tests: polygons that share borders. Every one is a function of its
-// seed.
+// Random coverages for property tests: polygons that share borders. Each is determined by its seed.
 #pragma once
 
 #include <cmath>
@@ -17,9 +16,9 @@
 
 namespace trapeze {
 
-/// A grid of cells with shifted corners and wiggled borders, which both neighbours run along; cells
-/// are dealt out to fewer features than there are cells, some to none. With enclaves inside of
-/// cells, some of them in a ring of another feature.
+/// A grid of cells with shifted corners and wiggly borders that both neighbours follow. The cells
+/// are assigned to fewer features than there are cells, and some cells to none. Some cells have
+/// enclaves inside, and some of these enclaves lie in a ring of another feature.
 class WiggledGrid {
  public:
   explicit WiggledGrid(unsigned seed) : random_(seed) {
@@ -49,7 +48,7 @@ class WiggledGrid {
     return found->second;
   }
 
-  /// What lies between two corners, always from the first to the second.
+  /// The points between two corners, always from the first to the second.
   const std::vector<Point>& border(std::pair<int, int> from, std::pair<int, int> to) {
     const auto [found, is_new] = borders_.try_emplace({from, to});
     if (!is_new) return found->second;
@@ -82,8 +81,8 @@ class WiggledGrid {
     if (between(0, 2) == 0) add_enclave(x, y, feature);
   }
 
-  /// A star in the middle of the cell is taken out of it and given to another feature, or a ring of
-  /// it to one and the middle to the next.
+  /// Takes a star out of the middle of the cell and gives it to another feature; or gives a ring of
+  /// it to one feature and the middle to the next.
   void add_enclave(int x, int y, int around) {
     const Point middle{x * width_ + width_ / 2, y * width_ + width_ / 2};
     const int count = static_cast<int>(features_.size());

@@ -132,7 +132,7 @@ TEST(Coverage, RingsOfFacesAreThoseThatItWasBuiltFrom) {
   }
 }
 
-/// The map built anew from the faces that are left is the one at hand.
+/// A map rebuilt from the remaining faces equals the current one.
 void expect_map_of_what_is_left(const TrapezoidalGraph& graph) {
   const std::vector<Rings> rings = rings_of_faces(graph);
   TrapezoidalGraph fresh;
@@ -212,7 +212,7 @@ TEST(Coverage, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
 }
 
 TEST(Coverage, RegionAtTheCoastGoesToALandHoweverLongTheCoast) {
-  // A spit with three sides in the sea, between two countries; as thin as the tolerance.
+  // A spit with three sides in the sea, between two countries; its width equals the tolerance.
   BuiltCoverage c(Texts{"0 0, 1000 0, 1000 400, 0 400", "1000 198, 1100 198, 1100 202, 1000 202",
                         "1000 0, 1400 0, 1400 198, 1100 198, 1000 198"});
   ASSERT_TRUE(c.outcome.built);
@@ -228,8 +228,8 @@ TEST(Coverage, RegionAtTheCoastGoesToALandHoweverLongTheCoast) {
 }
 
 TEST(Coverage, ACornerThatASmallNeighbourHadStaysWhenThatIsTaken) {
-  // The corner of the large square is a small one, which becomes a part of it; all vertices there
-  // are near to each other, so that each could go if the others stayed.
+  // The corner of the large square is itself a small square, which becomes a part of it. All
+  // vertices there are close to each other, so that each could be removed if the others stayed.
   const BuiltCoverage c(
       Texts{"40 0, 1000 0, 1000 1000, 0 1000, 0 40, 40 40", "0 0, 40 0, 40 40, 0 40"});
   ASSERT_TRUE(c.outcome.built);
@@ -250,7 +250,7 @@ TEST(Coverage, WhatIsLostByOneFeatureIsLessOfTheOneThatTookIt) {
     History history;
     const std::vector<std::uint32_t> rows = rows_for(c.graph);
     HistoryRecorder().record(c.graph, rows, {}, history);
-    // In the end all is dust, of which each feature has what it had at first.
+    // In the end everything is dust, and the dust of each feature equals its original area.
     std::vector<double> dust(rows.size(), 0);
     for (const Grain& grain : history.grains) {
       dust[grain.row / 10 - 1] += grain.area;
@@ -262,9 +262,9 @@ TEST(Coverage, WhatIsLostByOneFeatureIsLessOfTheOneThatTookIt) {
   }
 }
 
-// Features with faces in common.
+// Features that share faces.
 
-constexpr double kNone = 0;  // narrower ones are not faces of their own
+constexpr double kNone = 0;  // narrower overlaps get no face of their own
 
 TEST(CoverageInCommon, APlaceOfTwoFeaturesIsAFaceIfItIsWide) {
   const Texts texts{"0 0, 12 0, 12 10, 0 10", "10 0, 20 0, 20 10, 10 10"};
@@ -310,7 +310,7 @@ TEST(CoverageInCommon, FeaturesKeepTheirAreas) {
 }
 
 /// Calls check(history, level, adapted graph, faces) for every level of the coverages of the first
-/// seeds in which features have places in common, until a check fails.
+/// seeds whose features overlap, until a check fails.
 template <typename Check>
 void for_each_level_in_common(unsigned seeds, const Check& check) {
   for (unsigned seed = 0; seed < seeds; ++seed) {
@@ -357,7 +357,7 @@ TEST(CoverageInCommon, AllOfAFeatureIsDustInTheEnd) {
   }
 }
 
-// With horizontal borders, along which nodes have no height.
+// Includes horizontal borders, along which nodes have no height.
 TEST(CoverageInCommon, LevelEdgesAreThereForThoseWhoseBoundaryTheyAre) {
   BuiltCoverage c(features_from_text({"0 0, 10 0, 10 10, 0 10", "0 5, 10 5, 10 20, 0 20"}), kNone);
   History history;
@@ -372,7 +372,7 @@ TEST(CoverageInCommon, LevelEdgesAreThereForThoseWhoseBoundaryTheyAre) {
                                               ::testing::Pair(5, 1), ::testing::Pair(20, 1)));
 }
 
-/// A row of features, and the ends of a level edge of its boundary.
+/// The row of a feature, and the ends of a level edge of its boundary.
 using LevelEdge = std::tuple<std::uint32_t, int, int, int, int>;
 
 std::multiset<LevelEdge> level_edges_of(const TrapezoidalGraph& g, const FaceFeatures& rows) {

@@ -21,14 +21,14 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAre;
 
-/// So many metres on the ground as these cells are near the equator.
+/// Metres on the ground that equal this many cells near the equator.
 double metres_of(double cells) {
   return cells / cells_from_ground(1, 0);
 }
 
 using Texts = std::vector<std::string>;
 
-/// Features, and what becomes of them.
+/// Features, and the result of closing their gaps.
 struct Closing {
   std::vector<Rings> features;
   GapClosing done;
@@ -112,7 +112,7 @@ TEST(GapClosing, DetailOfASinglePolygonIsNotTouched) {
   const std::string text = "0 0, 50 0, 51 1, 52 0, 53 1, 100 0, 100 100, 0 100";
   const Closing alone(Texts{text}, 4);
   EXPECT_EQ(alone.features[0].points, rings_from_text(text).points);
-  // Nor where both sides have it.
+  // Nor where both sides have the detail.
   const std::string below = "0 0, 50 0, 51 1, 52 0, 53 1, 100 0, 100 -90, 0 -90";
   const Closing both(Texts{text, below}, 4);
   EXPECT_EQ(both.done.moved + both.done.led, 0u);
@@ -130,7 +130,7 @@ TEST(GapClosing, PolygonNarrowerThanTheGapStaysAsItIsAndIsNotCovered) {
   EXPECT_TRUE(outcome.overlaps.empty());
 }
 
-/// Squares of 100 cells, turned a little, with 50 between them: buildings along streets.
+/// Squares of 100 cells, rotated a little and 50 apart: buildings along streets.
 std::vector<Rings> buildings(int columns) {
   std::vector<Rings> features;
   for (int y = 0; y < columns; ++y) {
@@ -171,8 +171,8 @@ double length_of(const Rings& rings) {
   return length;
 }
 
-/// Pieces of a plane that was torn apart: between the cells of a grid with wiggly borders, gaps and
-/// overlaps of all widths, bays narrower than the distance, and islands in them.
+/// Pieces of a plane that was torn apart. Between the cells of a grid with wiggly borders there are
+/// gaps and overlaps of all widths, bays narrower than the distance, and islands in them.
 std::vector<Rings> torn(unsigned seed) {
   std::mt19937 random(seed);
   const auto between = [&](int a, int b) {
@@ -224,8 +224,8 @@ TEST(GapClosing, NoFeatureChangesByMoreThanItsBoundaryAndNoneComeToOverlap) {
   EXPECT_GT(moved, 500u) << "so something has been tested";
 }
 
-//   ______ ______     The left one is narrow and stays. What the middle one has in common with it
-//  |_|    |      |    stays as well, though the right one is near.
+//   ______ ______     The left one is narrow and stays. The middle one keeps its border with
+//  |_|    |      |    it, though the right one is near.
 //  | |____|______|
 TEST(GapClosing, BordersInCommonWithWhatTakesNoPartRemain) {
   const Texts texts{"97 0, 100 0, 100 50, 100 100, 97 100",
@@ -236,7 +236,7 @@ TEST(GapClosing, BordersInCommonWithWhatTakesNoPartRemain) {
 }
 
 TEST(GapClosing, TooManyVerticesWithinTheDistanceAreRefusedInWords) {
-  // Two combs whose teeth are all within the distance of each other.
+  // Two combs with all teeth within the distance of each other.
   std::vector<Rings> features(2);
   for (int side : {0, 1}) {
     Rings& rings = features[static_cast<std::size_t>(side)];
@@ -255,7 +255,7 @@ TEST(GapClosing, TooManyVerticesWithinTheDistanceAreRefusedInWords) {
 }
 
 TEST(GapClosing, NarrowPlaceGoesToNobodyWhoseBorderThereIsShort) {
-  // A round place between many features, each with a small part of its border.
+  // A round gap between many features, each with a small part of its border.
   std::vector<Rings> features;
   const auto at = [](int i, double radius) {
     const double angle = 2 * std::numbers::pi * i / 12;
@@ -286,7 +286,7 @@ TEST(GapClosing, DistancesAreOfTheGround) {
 }
 
 TEST(GapClosing, NarrowPlacesBetweenBordersAreFilled) {
-  // A lens of 4 cells at its widest, and a hole in the middle of one feature as narrow.
+  // A lens of 4 cells at its widest, and a narrow hole in the middle of one feature.
   const Closing c(
       Texts{"0 0, 100 0, 100 20, 98 50, 100 80, 100 100, 0 100; 40 20, 42 20, 42 80, 40 80",
             "100 0, 200 0, 200 100, 100 100, 100 80, 102 50, 100 20"},
@@ -298,12 +298,13 @@ TEST(GapClosing, NarrowPlacesBetweenBordersAreFilled) {
   EXPECT_EQ(check_graph(graph), "");
   EXPECT_EQ(outcome.gaps, 0u);
   EXPECT_EQ(outcome.filled, 1u);
-  // To the first one of two with as long a border; the hole is nobody's gap.
+  // The lens goes to the first of the two features, which have equally long borders with it; the
+  // hole is no gap.
   EXPECT_EQ(static_cast<int>(graph.doubled_areas()[1]), 2 * (100 * 100 - 2 * 60) + 120);
 }
 
-/// A grid of cells that all belong to someone, each drawn by itself: no vertex is where that of the
-/// neighbour is, and some are missing.
+/// A grid of cells without unassigned area, each digitized separately: vertices do not match those
+/// of the neighbour, and some are missing.
 std::vector<Rings> carelessly_drawn(unsigned seed) {
   constexpr int kWidth = 300;
   constexpr int kCells = 4;
@@ -319,7 +320,7 @@ std::vector<Rings> carelessly_drawn(unsigned seed) {
       const auto add = [&](Point p) {
         const bool is_corner = p.x % kWidth == 0 && p.y % kWidth == 0;
         if (!is_corner && between(0, 9) == 0) return;
-        // Between the same neighbours everybody means the same line.
+        // The same neighbours always follow the same intended line.
         const int dx = p.x % kWidth == 0 && !is_corner ? wiggle(p.y, p.x) : 0;
         const int dy = p.y % kWidth == 0 && !is_corner ? wiggle(p.x, p.y) : 0;
         ring.push_back({p.x + dx + between(-2, 2), p.y + dy + between(-2, 2)});
@@ -352,7 +353,8 @@ TEST(GapClosing, CarelesslyDrawnNeighboursBecomeACoverage) {
     double overlaps_before = 0;
     for (const Overlap& overlap : before.overlaps) overlaps_before += overlap.area;
     EXPECT_LT(overlaps, 0.05 * overlaps_before);
-    // Twelve inner borders of ten edges either way; a missing vertex costs at most one.
+    // Twelve inner borders in each direction, with ten edges each; a missing vertex costs at most
+    // one edge.
     EXPECT_GT(after.shared_edges, 200u);
   }
 }

@@ -1,4 +1,4 @@
-// What lies near each other becomes one block.
+// Polygons that are close to each other become one block.
 #include "core/borders/merging.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
 
-/// Houses of random sizes and shapes on both sides of streets, turned by an angle.
+/// Buildings of random sizes and shapes on both sides of streets, rotated by an angle.
 std::vector<Rings> town(unsigned seed, int houses, double angle = 0) {
   std::mt19937 random(seed);
   const auto between = [&](double a, double b) {
@@ -108,9 +108,9 @@ struct TownVoid {
     return sum;
   }
 
-  /// Of features that do not overlap: the number of the block that each is in.
+  /// For features that do not overlap: the number of the block that contains each feature.
   std::vector<std::uint32_t> blocks(double distance, std::size_t features) const {
-    // Triangles that are filled and hang together, and the faces beside them.
+    // Connected filled triangles, and the faces beside them.
     const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
     DisjointSets ties(count + features);
     for (VoidMesh::HalfEdge h = 0; h < 3 * count; ++h) {
@@ -149,7 +149,8 @@ TEST(VoidMesh, CoversTheVoidByTrianglesWithEmptyCircles) {
           ASSERT_EQ(mesh.twin(mesh.twin(h)), h);
           ASSERT_EQ(mesh.vertex(mesh.twin(h)), mesh.vertex(VoidMesh::next(h)));
           if (mesh.is_beyond(VoidMesh::triangle_of(mesh.twin(h)))) continue;
-          // The circle around the triangle does not hold the corner beyond, but for rounding.
+          // The circumcircle of the triangle does not contain the opposite corner, except by
+          // rounding.
           const auto at = [&](VoidMesh::HalfEdge k) {
             const Point p = mesh.corner(k);
             return std::complex<double>(p.x, p.y);
@@ -163,7 +164,7 @@ TEST(VoidMesh, CoversTheVoidByTrianglesWithEmptyCircles) {
           EXPECT_LE(angles, std::numbers::pi + 1e-6);
         }
       }
-      // Of the hull, what lies within: void and polygons.
+      // The interior of the hull: void and polygons.
       Int128 around = 0;
       for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
         for (VoidMesh::HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
@@ -193,7 +194,7 @@ TEST(Merging, WhatIsFilledIsTheLargestSetThatBridgesNoMore) {
     const TownVoid town_void(town(seed, 20));
     const VoidMesh& mesh = town_void.mesh;
     for (double distance = 40; distance < 4000; distance *= 1.3) {
-      // Everything, and what cannot be in it is taken away until nothing more goes.
+      // Starts from all triangles and removes those that cannot be filled until nothing changes.
       std::vector<bool> is_filled(mesh.triangle_count());
       for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
         std::array<double, 3> sides{};
@@ -230,7 +231,7 @@ double distance_between(Point p, Point a, Point b) {
   return std::hypot(a.x + along * x - p.x, a.y + along * y - p.y);
 }
 
-/// Of polygons that do not meet.
+/// For polygons that do not meet.
 double distance_between(const Rings& a, const Rings& b) {
   double least = kAll;
   for (const auto& [points, walls] : {std::pair(&a, &b), std::pair(&b, &a)}) {
@@ -304,7 +305,7 @@ TEST(Merging, BlocksAreTheSameWhenTheTownIsTurned) {
   std::size_t compared = 0;
   double filled = 0;
   double filled_turned = 0;
-  std::size_t others = 0;  // where vertices and feet are rounded otherwise
+  std::size_t others = 0;  // places where vertices and feet are rounded differently
   for (unsigned seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
     const TownVoid as_is(town(seed, 25));
@@ -336,7 +337,7 @@ TEST(Merging, BlocksAreTheSameWhenTheTownIsTurned) {
   EXPECT_NEAR(filled_turned / filled, 1, 0.01);
 }
 
-/// Towns, and polygons that share borders, lie over each other and have gaps.
+/// Towns, and polygons that share borders, overlap each other and have gaps.
 std::vector<Rings> features_for(unsigned seed) {
   return seed % 2 == 0 ? town(seed, 3 + static_cast<int>(seed)) : WiggledGrid(seed).features();
 }
@@ -381,7 +382,7 @@ TEST(Merging, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
   }
 }
 
-/// Two houses of 1000 x 1000 cells, so far apart.
+/// Two buildings of 1000 x 1000 cells, this far apart.
 std::vector<Rings> two_houses(std::int32_t gap) {
   std::vector<Rings> houses(2);
   houses[0].add(std::vector<Point>{{0, 0}, {1000, 0}, {1000, 1000}, {0, 1000}});
@@ -415,7 +416,7 @@ TEST(Merging, FeaturesOfSeveralClassesAreNumberedByThem) {
   EXPECT_TRUE(numbered({}).empty());
 }
 
-/// What each feature covers, cells squared.
+/// The area that each feature covers, in cells squared.
 std::vector<double> areas_at(const std::vector<Rings>& features, double epsilon) {
   const BuiltTown built(features, {.ratio = 16});
   AdaptableGraph adaptable(built.graph, {}, built.outcome.plan ? &*built.outcome.plan : nullptr);
@@ -449,7 +450,7 @@ TEST(Merging, GroupsBecomeTheSameBlocksAsAllFeaturesTogether) {
         for (std::size_t i = 0; i < group.size(); ++i) {
           const double area = together[group[i]];
           EXPECT_NEAR(apart[i], area, 0.02 * area) << i << " at " << epsilon;
-          blocks += area > 1.5e6;  // larger than any house
+          blocks += area > 1.5e6;  // larger than any building
         }
       }
     }

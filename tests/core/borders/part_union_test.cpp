@@ -17,7 +17,7 @@ struct United {
   PartUnion found;
   Rings rings;
 
-  /// Parts apart by themselves.
+  /// Each part is given separately.
   explicit United(const std::vector<std::string>& parts) {
     std::vector<std::uint32_t> ends;
     for (const std::string& part : parts) {
@@ -88,7 +88,7 @@ TEST(PartUnion, HolesAndIslandsInThemRemain) {
   const United u({ring, "40 40, 60 40, 60 60, 40 60"});
   EXPECT_FALSE(u.found.did_overlap);
   EXPECT_EQ(u.area(), 3'600 + 400);
-  // A hole that another part covers is none.
+  // A hole that another part covers is no hole.
   EXPECT_EQ(United({ring, kSquare}).area(), 10'000);
 }
 
@@ -100,7 +100,7 @@ TEST(PartUnion, PartsThatTouchDoNotOverlap) {
 }
 
 TEST(PartUnion, ManyPartsApartAreLeftAsTheyAre) {
-  // More than are compared box by box; the first one has all others in its bay.
+  // Too many to be compared box by box; the bay of the first contains all others.
   std::vector<std::string> parts{"-10 -10, 900 -10, 900 0, 0 0, 0 900, -10 900"};
   for (int i = 0; i < 400; ++i) {
     const int x = 20 + 20 * (i % 20);
@@ -118,7 +118,7 @@ TEST(PartUnion, IsWhatEachPartCoversOfItself) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     std::uniform_int_distribution<int> at(0, 12);
-    // Rectangles on a small grid: a cell is covered, or it is not.
+    // Rectangles on a small grid: a cell is either covered or not.
     std::vector<std::string> parts;
     std::vector<bool> is_covered(13 * 13, false);
     for (int i = 0; i < 2 + static_cast<int>(seed % 5); ++i) {

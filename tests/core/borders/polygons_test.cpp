@@ -31,7 +31,7 @@ std::string text_of(std::span<const Point> ring) {
   return out.str();
 }
 
-/// Each polygon as text: its rings, separated by semicolons.
+/// Each polygon as text, with its rings separated by semicolons.
 std::vector<std::string> texts_of(const Polygons& polygons) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < polygons.size(); ++i) {
@@ -53,7 +53,7 @@ TEST(Polygons, AnEmptyGraphHasNone) {
   EXPECT_THAT(texts_of(polygons_of(TrapezoidalGraph())), IsEmpty());
 }
 
-// y grows southwards, so counterclockwise with north up is: top, west, bottom, east.
+// y grows southwards, so counterclockwise with north up is top, west, bottom, east.
 TEST(Polygons, ShellsRunCounterclockwiseAndHolesClockwiseWhateverTheSource) {
   for (const char* rings : {"0 0, 90 0, 90 90, 0 90; 20 20, 20 40, 40 40, 40 20",
                             "40 40, 20 40, 20 20, 40 20; 90 90, 90 0, 0 0, 0 90"}) {
@@ -127,8 +127,8 @@ TEST(Polygons, HolesThatHangFromOneVertexOfTheShellStayApart) {
                           " 50 0, 45 90, 40 90; 50 0, 60 90, 55 90"));
 }
 
-/// Nothing crosses, every polygon taken alone is one connected polygon with just these rings, and
-/// all together are the map they came from: that is validity.
+/// Nothing crosses, every polygon taken alone is one connected polygon with exactly these rings,
+/// and all together are the map they came from. That is validity.
 void expect_valid(const Polygons& polygons, const TrapezoidalGraph& whole) {
   Rings all = polygons.rings;
   GraphBuilder builder;

@@ -40,11 +40,11 @@ TEST(RoundedPolygonsTest, CornersAreRoundedAndEdgesKeepTheirMiddles) {
   for (const Point p : {Point{0, 0}, Point{1000, 0}, Point{1000, 1000}, Point{0, 1000}}) {
     EXPECT_FALSE(has_point(features[0], p));
   }
-  // The ends of the curve, and its middle: a quarter of the way from the corner to them.
+  // The ends of the curve, and its middle at a quarter of the way from the corner to them.
   EXPECT_TRUE(has_point(features[0], {100, 0}));
   EXPECT_TRUE(has_point(features[0], {0, 100}));
   EXPECT_TRUE(has_point(features[0], {25, 25}));
-  // A third of each triangle is gone.
+  // A third of each triangle is removed.
   const auto area = static_cast<double>(doubled_area_of(features[0].polygons.rings[0]));
   EXPECT_NEAR(area / 2, 1e6 - 4 * 5000. / 3, 300);
 }
@@ -63,7 +63,7 @@ TEST(RoundedPolygonsTest, NeighboursOfOneGraphGetTheSamePoints) {
   const std::string left = "0 0,1000 0,1200 300,900 700,1000 1000,0 1000";
   const std::string right = "2000 0,2000 1000,1000 1000,900 700,1200 300,1000 0";
   std::vector<DrawnPolygons> features{feature(left, 3), feature(right, 3)};
-  // Not the two ends of the border, from which three edges lead.
+  // The two ends of the border stay: three edges meet there.
   EXPECT_EQ(round(features, {100, 1}).rounded, 6u);
   EXPECT_TRUE(has_point(features[0], {1000, 0}));
   EXPECT_FALSE(has_point(features[0], {1200, 300}));
@@ -79,7 +79,8 @@ TEST(RoundedPolygonsTest, NeighboursOfOneGraphGetTheSamePoints) {
 
 TEST(RoundedPolygonsTest, VerticesOfOtherGraphsKeepACornerSharp) {
   const std::string square = "0 0,1000 0,1000 1000,0 1000";
-  // Its corner is within the triangle; then in the same place as one of the square.
+  // The corner of the other ring is within the cut-off triangle, then coincides with a corner of
+  // the square.
   for (const std::string other : {"20 20,-500 10,-500 -500", "0 0,-500 10,-500 -500"}) {
     std::vector<DrawnPolygons> features{feature(square, 0), feature(other, 1)};
     round(features, {100, 1});
@@ -107,8 +108,8 @@ TEST(RoundedPolygonsTest, CutsAtTheEdgesOfTheMapStaySharp) {
   EXPECT_FALSE(has_point(features[0], {0, 0}));
 }
 
-// Half of the upper edge is less than a cell away from two triangles that touch in (750, 1): with
-// the corner at its left end rounded, it would begin at (500, 1) and run through there.
+// Half of the upper edge is less than a cell away from two triangles that touch in (750, 1). If the
+// corner at its left end were rounded, the edge would begin at (500, 1) and pass through there.
 TEST(RoundedPolygonsTest, ACornerStaysWhereItsEdgeWouldComeToTouchAnother) {
   const std::string above = "0 -300,1000 -300,1000 1,0 0";
   const std::string below = ";750 1,700 400,600 400;750 1,900 400,800 400";

@@ -34,7 +34,7 @@ const char* name_of(LinkKind kind) {
   return "?";
 }
 
-/// A polygon whose trapezoids have the numbers of a drawing.
+/// A polygon whose trapezoids are numbered as in a drawing.
 class Figure {
  public:
   /// `trapezoids` are named "A-B" by top and bottom vertex, T1 first.
@@ -100,9 +100,10 @@ double area_of(const TrapezoidalGraph& g, NodeId n) {
          (bottom - top);
 }
 
-/// What every chain of every graph has to be: linked one by one by connections; begun by a
-/// suspended node, below a division or at a join, and never going on across one; as a quad strip of
-/// its own area, with triangles at its ends only. Together the chains hold every inside node once.
+/// Invariants of all chains of every graph. A chain is linked node by node by connections. It
+/// begins at a suspended node, below a division or at a join, and never continues across one. Its
+/// quad strip has the area of its nodes, with triangles at its ends only. Together the chains
+/// contain every inside node once.
 void expect_chains_and_strips(const TrapezoidalGraph& g) {
   const std::vector<Link> links = g.links();
   std::multiset<NodeId> in_chains;
@@ -234,7 +235,7 @@ TEST(Figure1b, ChainsRunBetweenDivisionsAndJoins) {
   expect_chains_and_strips(figure.graph());
 }
 
-// The shell A B C around a hole H, and an island I in the hole; what is not in brackets is outside.
+// The shell A B C around a hole H, and an island I in the hole; the outside is not in brackets.
 //
 //                        A (50, 0)
 //   B (10, 10)        [    T1     ]
@@ -302,8 +303,8 @@ TEST(Figure1c, AllNodesAreTrackedFromTheStartingNode) {
   EXPECT_EQ(reached.size(), g.inside_nodes().size());
 }
 
-// The hole W X Y Z holds an island with a pocket that opens downwards, and a small one in the
-// pocket: it is the hole that counts, not the pocket.
+// The hole W X Y Z contains an island with a pocket that opens downwards, and a small island in the
+// pocket: the hole counts, not the pocket.
 //
 //      W-----------------X
 //      |   E----------F  |
@@ -326,9 +327,9 @@ TEST(PseudoLinks, AnIslandInThePocketOfAnotherHangsInTheHoleOfBoth) {
                             "H-L pseudo-join Z-C", "V-U pseudo-join Z-C"}));
 }
 
-// Level vertices. In the paper a horizontal side may have two vertices; here the sweep order (y,
-// then x) takes the left one first, so that the side appears as a trapezoid without height between
-// them, which is in the graph like any other and never drawn.
+// Level vertices. In the paper a horizontal side may have two vertices. Here the sweep order (y,
+// then x) takes the left one first, so the side appears as a trapezoid without height between them.
+// It is in the graph like any other and is never drawn.
 //
 //   A-------B
 //   |       |     A-B (no height), B-D, D-C (no height)

@@ -1,10 +1,10 @@
 // The generalization operators, one by one: every prototype of the paper's Figures 4 and 5, and the
-// cases that a graph with an outside, vertices of the same y and touching rings adds.
+// additional cases of a graph with an outside, vertices of the same y and touching rings.
 //
 // Trapezoids are written "A-B AC|DB": top and bottom vertex, left and right edge. The paper draws
-// trapezoids before and after; so do these tests, and each removal is checked for all that has to
-// be true of any: the graph is valid and is that of the rings that are left, revert gives back the
-// graph that was, apply the one that came.
+// trapezoids before and after, and so do these tests. Each removal is also checked for the general
+// invariants: the graph is valid and is that of the remaining rings, revert restores the previous
+// graph, and apply the new one.
 #include "core/graph/generalization.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// A polygon from which vertices are removed; `inside()` are its trapezoids at present.
+/// A polygon from which vertices are removed; `inside()` returns its current trapezoids.
 class Editor : public NamedPolygon {
  public:
   explicit Editor(const std::string& text) : NamedPolygon(text), log_(graph) {}
@@ -32,8 +32,8 @@ class Editor : public NamedPolygon {
     return decide_removal(graph, corner(vertex, other_of_loop), topology);
   }
 
-  /// Removes the vertex, from the loop that has `other_of_loop` if one is named, and checks all
-  /// that holds for every removal.
+  /// Removes the vertex, from the loop that contains `other_of_loop` if one is named, and checks
+  /// the invariants of every removal.
   void remove(char vertex, Removal wanted, char other_of_loop = 0) {
     const Decision decision = decide(vertex, other_of_loop);
     ASSERT_EQ(decision.removal, wanted) << vertex;
@@ -67,8 +67,8 @@ class Editor : public NamedPolygon {
 
 // ---- Figure 4: vertical generalization ----
 
-// The tip of a polygon goes with its vertex V. The trapezoid below keeps its height: its top side,
-// which had two vertices A and B, was that of the tip and is now the boundary.
+// The tip of a polygon is removed with its vertex V. The trapezoid below keeps its height: its top
+// side, which had two vertices A and B, was that of the tip and is now the boundary.
 //
 //            V
 //          .' '.
@@ -98,7 +98,8 @@ TEST(Figure4, b_MergingAtAOneVertexSide) {
   EXPECT_EQ(p.inside(), (Names{"A-B AD|AB", "B-D AD|BC", "D-C DC|BC"}));
 }
 
-// The same at a side with two vertices, both of which go. V-W, without height, is the side itself.
+// The same at a side with two vertices, both of which are removed. V-W, without height, is the side
+// itself.
 //
 //      A---.                    A---.
 //      |    '-B                 |    '-B
@@ -127,8 +128,8 @@ TEST(Figure4, c_EliminationOfTheTipAtTheBottom) {
   EXPECT_EQ(p.inside(), (Names{"D-C DA|DC", "C-A DA|CB", "A-B AB|CB"}));
 }
 
-// The neighbours of V have different y: the tip goes, and the trapezoid below it, whose top side
-// ran from A to the edge VB, becomes a triangle with its tip at A.
+// The neighbours of V have different y: the tip is removed, and the trapezoid below it, whose top
+// side ran from A to the edge VB, becomes a triangle with its tip at A.
 //
 //           V
 //          / \                                      .
@@ -172,7 +173,7 @@ TEST(Figure4, f_DegenerationAboveATipAtTheBottom) {
   EXPECT_EQ(p.inside(), (Names{"D-C DB|DC", "C-B DB|CA", "B-A BA|CA"}));
 }
 
-// The top side of a polygon with its two vertices V and W, shared with nobody; W is kept. The
+// The top side of a polygon with its two vertices V and W, not shared; W is kept. The
 // trapezoid below collapses into a triangle with its tip at W.
 //
 //      V------W                       W
@@ -187,7 +188,7 @@ TEST(Figure4, g_DegenerationAtATwoVertexSideOfWhichOneStays) {
   EXPECT_EQ(p.inside(), (Names{"W-A WA|WB", "A-B AC|WB", "B-C AC|BC"}));
 }
 
-// The same with both vertices to go: first the trapezoid collapses, then the triangle is
+// The same with both vertices removed: first the trapezoid collapses, then the triangle is
 // eliminated.
 //
 //      V------W
@@ -205,7 +206,8 @@ TEST(Figure4, h_EliminationAtATwoVertexSideOfWhichBothGo) {
 // ---- Figure 5: horizontal generalization ----
 
 // Below the division at V hang two triangles side by side, with tips A and B of the same y. Without
-// V they are one trapezoid; as the line through V goes too, it merges with the one above.
+// V they are one trapezoid. As the line through V is removed too, it merges with the trapezoid
+// above.
 //
 //      C-----------D              C-----------D
 //       \    T1   /                \         /
@@ -231,8 +233,9 @@ TEST(Figure5, b_MergingOfTwoTrianglesAboveAJoin) {
   EXPECT_EQ(p.inside(), (Names{"A-B AC|AB", "B-C AC|BD", "C-D CD|BD"}));
 }
 
-// The legs go on below A, the nearer neighbour of V: the division moves from V to A. The trapezoid
-// above reaches down to A's level; those of the legs get its level and, on the right, the edge AB.
+// The legs continue below A, the nearer neighbour of V: the division moves from V to A. The
+// trapezoid above reaches down to A's level; those of the legs get its level and, on the right, the
+// edge AB.
 //
 //      C-----------D              C-----------D
 //      |    T1     |              |           |
@@ -266,11 +269,11 @@ TEST(Figure5, d_AdjustmentMovesAJoinToTheNearerNeighbour) {
             (Names{"G-B GB|GD", "E-F EC|EF", "F-A EC|FA", "B-A BA|GD", "A-C EC|GD", "C-D CD|GD"}));
 }
 
-// ---- What a vertex has to do with the rest of the boundary ----
+// ---- How a vertex relates to the rest of the boundary ----
 
-// A hole H begins at V, where the shell turns inwards. V goes from the shell, but H still holds the
-// line there: the two trapezoids on the hole's side are linked to it and not merged with each
-// other.
+// A hole H begins at V, where the shell turns inwards. V is removed from the shell, but H still
+// holds the line there: the two trapezoids on the hole's side are linked to it and not merged with
+// each other.
 //
 //    A-----------C            A-----------C
 //     \          |            |           |
@@ -294,7 +297,7 @@ TEST(TouchingRings, AVertexStaysIfAnotherRingLeavesItInsideTheWedge) {
   EXPECT_EQ(p.name(decision.blocker), "V");
 }
 
-// A, V and B are in line: the hole's corner would come to lie on the edge AB.
+// A, V and B are collinear: the hole's corner would end up on the edge AB.
 TEST(TouchingRings, AVertexInLineWithItsNeighboursStaysWhileAnotherRingTouchesIt) {
   Editor p("A 0 0, C 100 1, D 101 101, B 0 100, V 0 50; V 0 50, H 60 45, I 61 60");
   const Decision decision = p.decide('V', 'A');
@@ -304,7 +307,7 @@ TEST(TouchingRings, AVertexInLineWithItsNeighboursStaysWhileAnotherRingTouchesIt
   p.remove('V', Removal::regular, 'A');
 }
 
-// The chord A-B is an edge of another ring already; without V there would be two of it.
+// The chord A-B is already an edge of another ring; without V there would be two such edges.
 //
 //       A---.                 A---.
 //      /| \  '.              /|    '.
@@ -321,8 +324,8 @@ TEST(TouchingRings, AVertexStaysWhileItsNeighboursAreJoinedByAnEdgeAlready) {
   EXPECT_EQ(p.inside(), (Names{"A-C AB|AC", "C-B AB|CB"}));
 }
 
-//      A-----B            Two triangles with the tip W in common: each goes by itself, and W stays
-//       \   /             as long as one of them is there.
+//      A-----B            Two triangles with a shared tip W: each is removed alone, and W stays
+//       \   /             as long as one of them exists.
 //        \ /
 //         W
 //        / \              .
@@ -337,7 +340,7 @@ TEST(TouchingRings, AnHourglassGoesOneBulbAtATime) {
 }
 
 //      A
-//      |\  .                the last three vertices of a polygon go together
+//      |\  .                the last three vertices of a polygon are removed together
 //      | V
 //      |/
 //      B
@@ -391,8 +394,8 @@ TEST(TopologyTest, AVertexOnTheNewEdgeBlocks) {
   EXPECT_EQ(p.name(decision.blocker), "M");
 }
 
-// The lake H reaches into the triangle A V B, so V, of weight 10, must wait. When the lake goes, at
-// a weight of some 21, V goes too, and counts as of that tolerance.
+// The lake H reaches into the triangle A V B, so V, of weight 10, must wait. When the lake is
+// removed, at a weight of some 21, V is removed too, and is recorded with that tolerance.
 //
 //     E----------------------.
 //      A                     |

@@ -44,7 +44,7 @@ TEST(PlateCarreeTest, PolesAreFarFromTheGrid) {
   }
 }
 
-// The bound of the header, looked at along sides anywhere on the map.
+// The bound documented in the header, checked along sides anywhere on the map.
 TEST(PlateCarreeTest, SidesOfStraightHeightAreNearTheirChords) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);

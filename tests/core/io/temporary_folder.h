@@ -1,4 +1,4 @@
-// A folder of its own for a test, gone with all that is in it when the test ends.
+// A temporary folder for a test; it is removed with its contents when the test ends.
 #pragma once
 
 #include <stdlib.h>

@@ -41,7 +41,7 @@ bool is_inside(const Rings& rings, double x, double y) {
   return inside;
 }
 
-/// A star of random spikes around a place: simple, and seldom convex.
+/// A star of random spikes around a position: simple, and seldom convex.
 Ring star(std::mt19937& random, Point middle, int corners, double least, double most) {
   Ring ring;
   for (int i = 0; i < corners; ++i) {
@@ -53,7 +53,7 @@ Ring star(std::mt19937& random, Point middle, int corners, double least, double 
   return ring;
 }
 
-/// Of what lies inside of the rings, by looking at many places: how deep the deepest is.
+/// The greatest depth found inside the rings by sampling many positions.
 double deepest(const Rings& rings, double step) {
   Box bounds;
   for (const Point p : rings.points) bounds.include(p);
@@ -89,7 +89,7 @@ TEST(LabelAnchorsTest, OfBoxesIsInTheMiddle) {
   EXPECT_NEAR(wide[0].depth, 500, 500 * LabelAnchors::kDepthShare);
   EXPECT_NEAR(wide[0].place.y, 500, 500 * LabelAnchors::kDepthShare);
   EXPECT_EQ(wide[0].area, 12e6F);
-  // Where a name has less room than it is high, its width counts.
+  // Where a name has less width than it needs for its height, the width counts.
   const auto high = anchors_of_feature(0, rings_of({box(0, 0, 600, 6'000)}));
   ASSERT_EQ(high.size(), 1u);
   EXPECT_NEAR(high[0].depth, 100, 100 * LabelAnchors::kDepthShare);
@@ -131,7 +131,7 @@ TEST(LabelAnchorsTest, NothingIsDeeper) {
     ASSERT_EQ(anchors.size(), 1u);
     EXPECT_TRUE(is_inside(rings, anchors[0].place.x, anchors[0].place.y));
     EXPECT_GE(anchors[0].depth, deepest(rings, 60) * (1 - LabelAnchors::kDepthShare) - 1);
-    // The ellipse lies inside, all of it.
+    // The whole ellipse lies inside.
     for (int k = 0; k < 360; ++k) {
       const double angle = k * std::numbers::pi / 180;
       const double part = 0.999;
@@ -143,7 +143,7 @@ TEST(LabelAnchorsTest, NothingIsDeeper) {
   }
 }
 
-/// With corners at right angles, turned by an angle, and so between walls that face each other.
+/// A ring with right angles, rotated by an angle, so that its space lies between opposite walls.
 Ring turned(const Ring& ring, double angle) {
   Ring made;
   for (const Point p : ring) {
@@ -158,7 +158,7 @@ TEST(LabelAnchorsTest, NothingIsDeeperBetweenWalls) {
   std::uniform_int_distribution<std::int32_t> length(300, 6'000);
   std::uniform_real_distribution<double> angle(0, std::numbers::pi);
   for (int i = 0; i < 60; ++i) {
-    // An L with arms of any width, some of them cut into short sides.
+    // An L with arms of any width; some are divided into short sides.
     const std::int32_t wide = length(random);
     const std::int32_t high = length(random);
     const std::int32_t across = wide / 4 + length(random) * wide / 12'000;
@@ -202,9 +202,9 @@ TEST(LabelAnchorsTest, OfWhatIsAsItWasIsTakenOver) {
   const LabelAnchors found(*before, LabelParts::all);
   std::vector<LabelAnchor> marked(found.all().begin(), found.all().end());
   ASSERT_EQ(marked.size(), 3u);
-  for (LabelAnchor& anchor : marked) anchor.depth = 1;  // so that it is seen whence they are
+  for (LabelAnchor& anchor : marked) anchor.depth = 1;  // marks anchors that are taken over
 
-  // In another order: the house is as it was, and so is the pond; not so what lies over the field.
+  // In another order: the building and the pond are unchanged, but not the features over the field.
   const std::unique_ptr<Layer> after = layer_of({house, field, other_pond, pond});
   const LabelAnchors anew(*after, LabelParts::all);
   const LabelAnchors again(*after, KnownAnchors{before.get(), marked});

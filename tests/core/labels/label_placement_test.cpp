@@ -37,8 +37,8 @@ bool overlap(const LabelCandidate& a, const LabelCandidate& b, double scale, dou
          std::abs(a.y - b.y) * scale < a.half_height + b.half_height - kRounding;
 }
 
-/// At every step: no two overlap, and what is not shown is too small there or in the way of one
-/// that is.
+/// At every step no two labels overlap. A label that is not shown is too small there or overlaps
+/// one that is shown.
 void expect_well_placed(const LabelPlacement& placement, double world) {
   const auto all = placement.candidates();
   for (int step = 0; step < LabelPlacement::kSteps; ++step) {
@@ -88,7 +88,7 @@ TEST(LabelPlacementTest, ThePriorityDecides) {
       {apart, 0, 20, 5, scale}, {0, 0, 20, 5, scale}, {2 * apart, 0, 20, 5, scale}};
   const LabelPlacement placement(three, 0);
   EXPECT_EQ(placement.first_step_of(0), 20);
-  // 40 pixels are needed, half a zoom is 42.
+  // It takes 40 pixels; half a zoom gives 42.
   EXPECT_EQ(placement.first_step_of(1), 21);
   EXPECT_EQ(placement.first_step_of(2), 21);
 }

@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-/// A town of small squares with courtyards, a feature each.
+/// A town of small square buildings with courtyards, one feature each.
 std::unique_ptr<Layer> town(std::int32_t side) {
   FeatureTable features((std::vector<Field>()));
   std::vector<LayerBuilder> builders(1);
@@ -56,14 +56,14 @@ TEST(ClassDustTest, EveryClassKeepsTheAreaOfItsFeatures) {
   for (std::size_t row = 0; row < classes.size(); ++row) {
     classes[row] = row % 4 == 3 ? kNotDrawn : static_cast<std::uint8_t>(row % 4);
   }
-  const Level level = nearest_level(40'000);  // all are gone
+  const Level level = nearest_level(40'000);  // all are below it
   ClassShapes shapes;
   ClassDust().gather(layer->grains(), {kEverything, {0, level}, 160'000}, classes, shapes);
   const double of_one = 9e6 - 1e6;  // without the courtyard
   const std::map<int, double> sums = area_by_class(shapes.motes);
   ASSERT_EQ(sums.size(), 3U);
   for (const auto& [feature_class, area] : sums) EXPECT_NEAR(area, 100 * of_one, of_one);
-  EXPECT_LE(shapes.motes.size(), 3U * 8 * 8);  // as many pixels as the town has, for each class
+  EXPECT_LE(shapes.motes.size(), 3U * 8 * 8);  // at most the pixels of the town per class
   EXPECT_TRUE(std::ranges::is_sorted(shapes.motes, {}, &ClassMote::feature_class));
 }
 
@@ -74,7 +74,7 @@ TEST(ClassDustTest, OnlyWhatIsGoneByTheLevelAndLiesInTheBoxIsGathered) {
   ClassDust dust;
   dust.gather(layer->grains(), {kEverything, {0, 0}, 4}, classes, shapes);
   EXPECT_TRUE(shapes.motes.empty());
-  // Buildings are 3000 cells wide, and no farther beyond the box than that.
+  // Buildings are 3000 cells wide and reach at most this far beyond the box.
   const Box near{-6010, -6010, 506'010, 506'010};
   dust.gather(layer->grains(), {{0, 0, 500'000, 500'000}, {0, kLastLevel}, 4000}, classes, shapes);
   EXPECT_FALSE(shapes.motes.empty());
@@ -89,7 +89,7 @@ TEST(ClassDustTest, WhatIsLargerThanAPixelIsAPatchWhereItWas) {
   const std::vector<std::uint8_t> classes(400, 0);
   ClassShapes shapes;
   ClassDust().gather(layer->grains(), {kEverything, {0, kLastLevel}, 900}, classes, shapes);
-  // 400 buildings, and 400 courtyards that take away from them.
+  // 400 buildings, and 400 courtyards that are subtracted from them.
   EXPECT_TRUE(shapes.motes.empty());
   EXPECT_EQ(shapes.patches.size(), 800U);
   EXPECT_EQ(std::ranges::count_if(shapes.patches, &ClassPatch::is_hole), 400);

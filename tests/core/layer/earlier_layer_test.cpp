@@ -21,7 +21,7 @@
 namespace trapeze {
 namespace {
 
-/// Changes one or a few things.
+/// Makes one or a few changes.
 void edit(std::mt19937& random, Map& map) {
   const auto below = [&random](std::size_t end) {
     return std::uniform_int_distribution<std::size_t>(0, end - 1)(random);
@@ -57,7 +57,7 @@ void edit(std::mt19937& random, Map& map) {
 struct Built {
   std::shared_ptr<const Layer> layer;
   std::size_t taken_over = 0;
-  std::string outcomes;  // of all that was built or taken over
+  std::string outcomes;  // of all features, built or taken over
 };
 
 std::string text_of(const BuildOutcome& outcome) {
@@ -83,7 +83,7 @@ std::string text_of(const Assembly& assembly) {
   return text + outcome.failure + "\n";
 }
 
-/// The layer of a map by two builders, as a file of it would be loaded.
+/// The layer of a map by two builders, as loading a file of it would build it.
 Built build(const Map& map, const LayerOptions& options, const Built* before = nullptr,
             unsigned threads = 1) {
   std::unique_ptr<EarlierLayer> earlier;
@@ -151,7 +151,7 @@ TEST(EarlierLayerTest, WhatIsTakenOverIsAsIfItWereBuilt) {
       std::mt19937 random(seed);
       Map map = sample_map(seed);
       Built before = build(map, options);
-      // Each takes over from one that has taken over itself.
+      // Each layer takes over from one that took over itself.
       for (int step = 0; step < 6; ++step) {
         SCOPED_TRACE("step " + std::to_string(step));
         for (int changes = 0; changes <= step % 3; ++changes) edit(random, map);
@@ -184,7 +184,7 @@ TEST(EarlierLayerTest, AGroupIsBuiltAnewIfOneOfItsFeaturesHasChanged) {
   EXPECT_EQ(build(map, {}, &before).taken_over, 13u);
   map.back().points[2].x += 9;
   EXPECT_EQ(build(map, {}, &before).taken_over, 9u);
-  std::swap(map[0], map[1]);  // what lies over what is another matter now
+  std::swap(map[0], map[1]);  // changes which one overlaps the other
   EXPECT_EQ(build(map, {}, &before).taken_over, 0u);
 }
 

@@ -15,7 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// What is seen of each feature of a layer: a sum of areas by row and share.
+/// The visible parts of each feature of a layer: a sum of areas by row and share.
 class SeenAreas {
  public:
   explicit SeenAreas(const std::vector<std::string>& texts) {
@@ -26,7 +26,7 @@ class SeenAreas {
   }
 
   FeatureStack::Paint& paint(std::uint32_t row) { return paints_[row]; }
-  /// How many trapezoids had to be cut up for the last areas().
+  /// The number of trapezoids that the last areas() had to cut up.
   std::size_t cut_up() const { return cut_up_; }
   void set_narrowest(double cells) { narrowest_ = cells; }
   void cut_whole_features() { cuts_whole_features_ = true; }
@@ -133,7 +133,7 @@ TEST(FeatureStackTest, FeaturesOfOneColourAreLeftWholeWhereAllAreOpaque) {
 }
 
 TEST(FeatureStackTest, FeaturesOfOneColourAreCutWhereTheirBoundariesRunAlongEachOther) {
-  // The halves of a square, the square again, and one within it.
+  // The halves of a square, the square again, and a small one within it.
   const std::vector<std::string> texts = {
       "0 0, 1000 0, 1000 1000, 0 1000", "0 0, 500 0, 500 1000, 0 1000",
       "0 0, 1000 0, 1000 1000, 0 1000", "200 200, 300 200, 300 300, 200 300"};
@@ -146,7 +146,7 @@ TEST(FeatureStackTest, FeaturesOfOneColourAreCutWhereTheirBoundariesRunAlongEach
 }
 
 TEST(FeatureStackTest, OnlyTrapezoidsNearOtherFeaturesAreCutUp) {
-  // A comb whose teeth are far from what lies over it.
+  // A comb whose teeth are far from the feature over it.
   const std::vector<std::string> texts = {
       "0 0, 1000 0, 1000 50, 900 500, 800 50, 700 500, 600 50, 500 500, 400 50, 0 50",
       "10 10, 30 10, 30 40, 10 40"};

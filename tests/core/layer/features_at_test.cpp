@@ -19,7 +19,7 @@ Rings square(std::int32_t x, std::int32_t y, std::int32_t side) {
   return rings;
 }
 
-/// By the parity of the edges to the east: found without trapezoids.
+/// By the parity of the edges to the east, without trapezoids.
 bool is_inside(Point p, const Rings& rings) {
   bool inside = false;
   for (std::size_t r = 0; r < rings.size(); ++r) {
@@ -41,7 +41,7 @@ TEST(FeaturesAtTest, FindsAtFullDetailJustTheFeaturesWhoseBoundariesGoAroundTheP
     for (std::uint32_t row = 0; row < 2; ++row) layer->append_outline(row, outlines[row]);
     const Box& box = layer->bounds();
     std::mt19937 random(seed);
-    std::vector<Point> points = outlines[0].points;  // corners are the hardest
+    std::vector<Point> points = outlines[0].points;  // corners are the hardest cases
     for (int i = 0; i < 200; ++i) {
       points.push_back({std::uniform_int_distribution(box.min_x - 1, box.max_x + 1)(random),
                         std::uniform_int_distribution(box.min_y - 1, box.max_y + 1)(random)});

@@ -31,7 +31,7 @@ std::unique_ptr<Layer> sample_layer() {
   return LayerBuilder::join(builders, std::move(features));
 }
 
-/// Copies of all arrays, so that a test can spoil them.
+/// Copies of all arrays, so that a test can corrupt them.
 struct Copies {
   explicit Copies(const LayerArrays& a)
       : vertices(a.vertices.begin(), a.vertices.end()),

@@ -32,7 +32,7 @@ struct Feature {
 };
 using Features = std::vector<Feature>;
 
-/// As a file of it would be loaded.
+/// As loading a file of the features would build it.
 std::unique_ptr<Layer> build(const Features& features, const LayerOptions& options) {
   FeatureTable table(std::vector<Field>{{"name", FieldType::text}, {"points", FieldType::integer}});
   std::vector<Rings> rings;
@@ -66,7 +66,7 @@ std::unique_ptr<Layer> build(const Features& features, const LayerOptions& optio
   return LayerBuilder::join(builders, std::move(table));
 }
 
-/// What is there, by the ids of features.
+/// The drawn trapezoids, by feature id.
 std::multiset<std::pair<std::int64_t, Drawn>> drawn_of(const Layer& layer, Level level,
                                                        const std::vector<TrapezoidRange>& ranges) {
   std::multiset<std::pair<std::int64_t, Drawn>> all;
@@ -141,7 +141,7 @@ std::string attributes_of(const Layer& layer, std::uint32_t row) {
          (number == nullptr ? "" : std::to_string(*number));
 }
 
-/// By id; of those that are there.
+/// The existing features, by id.
 std::map<std::int64_t, std::pair<Rings, std::string>> features_of(const Layer& layer) {
   std::map<std::int64_t, std::pair<Rings, std::string>> all;
   for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
@@ -153,7 +153,7 @@ std::map<std::int64_t, std::pair<Rings, std::string>> features_of(const Layer& l
   return all;
 }
 
-/// That those of `all` that meet the box are found by it, in ascending order.
+/// Expects that the index finds those of `all` that meet the box, in ascending order.
 void expect_found(const Layer& layer, Level level, const std::vector<TrapezoidRange>& all,
                   const Box& box) {
   std::vector<TrapezoidRange> ranges;
@@ -207,7 +207,7 @@ class Edited {
     patcher_ = std::make_unique<LayerPatcher>(*build(features_, options));
   }
 
-  /// Changes a few features at once.
+  /// Changes a few features at the same time.
   LayerChanges edit(int count) {
     std::set<std::int64_t> changed;
     for (int i = 0; i < count; ++i) changed.insert(edit_one());
@@ -230,7 +230,7 @@ class Edited {
     return patcher_->apply({to_build, *build(features, options_)});
   }
 
-  /// The features, too, are those of the first state.
+  /// The features are reset to the first state, too.
   void start_over() {
     patcher_->start_over();
     features_ = first_features_;
@@ -277,7 +277,7 @@ class Edited {
   const LayerOptions options_;
   std::int64_t next_id_ = 100;
   Features first_features_;
-  Features features_;  // new ones come last, as in the layer
+  Features features_;  // new ones are last, as in the layer
   std::unique_ptr<LayerPatcher> patcher_;
 };
 

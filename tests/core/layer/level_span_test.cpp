@@ -28,7 +28,7 @@ std::unique_ptr<Layer> shapes() {
   return LayerBuilder::join(builders, std::move(features));
 }
 
-/// Boxes within each other, and levels likewise.
+/// Nested boxes, and nested level ranges.
 struct Place {
   explicit Place(const Box& bounds, unsigned seed) : random(seed) {
     outer.box = part_of(bounds);

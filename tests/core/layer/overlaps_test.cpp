@@ -54,7 +54,7 @@ TEST(OverlapsTest, NeighboursThatTouchHaveNone) {
 }
 
 TEST(OverlapsTest, NeighboursWhoseBorderTheGridMovedHaveNone) {
-  // The border of the second lacks a vertex of the first, which lies a cell beside it.
+  // The border of the second feature lacks a vertex of the first, which is a cell away from it.
   const auto layer = layer_of_texts(
       {"0 0, 90000 0, 50000 501, 10000 1000, 0 1000", "90000 0, 90000 1000, 10000 1000"});
   EXPECT_TRUE(layer->overlaps().empty());
@@ -84,7 +84,7 @@ TEST(OverlapsTest, KnowWhereBoundariesRunAlongEachOther) {
   EXPECT_EQ(along("0 0, 10000 0, 10000 10000, 0 10000"), 4 * kSide);
   EXPECT_EQ(along("0 -500, 5000 -500, 5000 20000, 0 20000"), kSide);
   EXPECT_EQ(along("2000 0, 6000 0, 6000 500, 2000 500"), 4000u);
-  // On the other side of its boundary.
+  // On the other side of the boundary.
   EXPECT_EQ(along("-500 2000, 10000 1000, 10000 500"), 500u);
 }
 
@@ -147,7 +147,7 @@ TEST(OverlapsTest, AreAllOfThoseOfManySquaresOfAllSizes) {
   std::vector<Square> squares;
   std::vector<Rings> polygons;
   for (int i = 0; i < 3000; ++i) {
-    // Two towns far apart, and a few large ones around.
+    // Two towns far apart, and a few large features around them.
     const int side = i % 500 == 0 ? 400'000 : 10 + static_cast<int>(random() % 400);
     const int town = i % 2 == 0 ? -1'000'000 : 1'000'000;
     const int x = town + static_cast<int>(random() % 10'000);

@@ -18,7 +18,7 @@ Box square_box(std::int32_t middle, std::int32_t half) {
   return {middle - half, -half, middle + half, half};
 }
 
-/// A land with a lake, in which there is an island with a pond; and an island off the coast.
+/// Land with a lake, an island in the lake with a pond, and an island off the coast.
 Rings archipelago() {
   Rings rings;
   add_square(rings, 0, 100);

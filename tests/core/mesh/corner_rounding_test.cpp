@@ -25,7 +25,7 @@ namespace {
 using PointOnWay = PlateCarreeMesh::PointOnWay;
 
 constexpr Box kEverywhere{kGridMin, kGridMin, kGridMax, kGridMax};
-constexpr std::int32_t kLarger = 1024;  // so that rounding to cells is nothing
+constexpr std::int32_t kLarger = 1024;  // makes rounding to cells negligible
 
 Rings larger(Rings rings) {
   for (Point& p : rings.points) p = {p.x * kLarger, p.y * kLarger};
@@ -36,7 +36,7 @@ std::unique_ptr<Layer> layer_of_text(const std::string& text) {
   return layer_of({larger(rings_from_text(text))});
 }
 
-/// Parcels that share borders, each of which bends four times, as one coverage.
+/// Parcels that share borders, each with four bends, as one coverage.
 std::unique_ptr<Layer> parcels(unsigned seed) {
   constexpr int kSide = 6;
   constexpr int kSize = 400;
@@ -51,7 +51,7 @@ std::unique_ptr<Layer> parcels(unsigned seed) {
     if (is_new) found->second = {x * kSize + off(50), y * kSize + off(50)};
     return found->second;
   };
-  // From west to east, or north to south, without its ends.
+  // From west to east, or from north to south, without its ends.
   std::map<std::tuple<int, int, bool>, std::vector<Point>> border_at;
   const auto border = [&](int x, int y, bool is_level) {
     const auto [found, is_new] = border_at.try_emplace({x, y, is_level});
@@ -96,7 +96,7 @@ std::unique_ptr<Layer> parcels(unsigned seed) {
   return LayerBuilder::join(builders, std::move(table));
 }
 
-/// All edges that are near the box, once each.
+/// Every edge near the box, once.
 std::set<std::uint32_t> add_all(const Layer& layer, const Box& box, CornerRounding& corners,
                                 const std::set<std::uint32_t>& sharp = {}) {
   std::set<std::uint32_t> edges;
@@ -167,7 +167,7 @@ TEST(CornerRounding, ACornerIsAParabolaBetweenPointsOnItsEdges) {
     EXPECT_NEAR(std::abs(middle.y - corner.tip.y), 2.5 * kLarger, 1);
   }
   add_all(*square, kEverywhere, corners);
-  corners.find({80, kLarger});  // no farther than the middles
+  corners.find({80, kLarger});  // not beyond the midpoints
   for (const CornerRounding::Corner& corner : corners.corners()) {
     for (const double share : corner.shares) EXPECT_EQ(share, 0.5);
   }
@@ -252,7 +252,7 @@ TEST(CornerRounding, PlacesHaveTheAreaBetweenTheCornerAndTheCurve) {
         const double area = doubled_area(vertices, edges, trapezoids);
         const double wanted = doubled_area(ring);
         ASSERT_NEAR(is_hole ? -area : area, wanted, 1e-6 * wanted + 1) << seed;
-        // A third of the triangle, but for the chords.
+        // A third of the triangle, apart from the effect of the chords.
         const double triangle = doubled_area(std::vector<Point>{ring[0], ring[1], ring.back()});
         ASSERT_GT(wanted, 0.3 * triangle) << seed;
         ASSERT_LT(wanted, 0.51 * triangle) << seed;
@@ -323,7 +323,7 @@ TEST(CornerRounding, DoesNotDependOnWhatLiesBeyondTwiceTheRadius) {
     };
     EXPECT_EQ(shapes_of(some), shapes_of(all)) << seed;
     compared += shapes_of(all).size();
-    // Edges of which one end is seen, and the other is far away, too.
+    // Includes edges with one end in view and the other far away.
     std::vector<PointOnWay> way;
     std::vector<PointOnWay> same;
     for (const std::uint32_t edge : edges) {

@@ -19,7 +19,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 4096;  // cells: rounding to them is nothing
+constexpr double kPixel = 4096;  // cells; makes rounding to cells negligible
 constexpr Box kEverywhere{kGridMin, kGridMin, kGridMax, kGridMax};
 
 using Ring = std::vector<Vector>;  // in pixels
@@ -66,7 +66,7 @@ std::unique_ptr<Layer> layer_with(const std::vector<Ring>& polygons, bool is_cov
   return LayerBuilder::join(builders, std::move(table));
 }
 
-/// What grows of a layer to that width, in pixels.
+/// The parts of a layer that grow to that width, in pixels.
 class Grown {
  public:
   Grown(const Layer& layer, double width, const Box& box = kEverywhere) : layer_(layer) {
@@ -95,7 +95,7 @@ class Grown {
 
   const Exaggeration& all() const { return all_; }
 
-  /// What has grown of a face, in pixels.
+  /// The area that a face has grown by, in pixels.
   double area(std::uint32_t face) const {
     double sum = 0;
     for (const auto& t : all_.triangles()) {
@@ -109,19 +109,19 @@ class Grown {
     return sum;
   }
 
-  /// How many triangles hold a place, which must not lie on a side of one.
+  /// The number of triangles that contain a position, which must not lie on a side of one.
   int triangles_at(Vector place) const {
     return static_cast<int>(
         std::ranges::count_if(all_.triangles(), [&](const auto& t) { return holds(t, place); }));
   }
-  /// The face that has grown over a place, or -1.
+  /// The face that has grown over a position, or -1.
   int face_grown_over(Vector place) const {
     for (const auto& t : all_.triangles()) {
       if (holds(t, place)) return static_cast<int>(BoundaryMap::number_of(t.face));
     }
     return -1;
   }
-  /// The face that holds a place by itself, or -1.
+  /// The face that contains a position without growing, or -1.
   int face_at(Vector place) const {
     const MeshView& mesh = layer_.mesh();
     const double x = place.x * kPixel;
@@ -134,7 +134,7 @@ class Grown {
     }
     return -1;
   }
-  /// What the faces lose to those that grow, in pixels.
+  /// The area that faces lose to growing ones, in pixels.
   double area_in_common() const {
     std::vector<Point> vertices;
     std::vector<MeshEdge> edges;
@@ -175,7 +175,7 @@ class Grown {
   std::vector<std::uint32_t> trapezoids_;
 };
 
-/// Houses of all sizes in all directions, and narrow strips between them, that do not overlap.
+/// Buildings of all sizes in all directions, and narrow strips between them, without overlaps.
 std::vector<Ring> town(unsigned seed) {
   std::mt19937 random(seed);
   const auto between = [&random](double from, double to) {
@@ -193,7 +193,7 @@ std::vector<Ring> town(unsigned seed) {
       ring = rotated(ring, between(0, 6.28));
       Vector least{100, 100};
       for (const Vector p : ring) least = {std::min(least.x, p.x), std::min(least.y, p.y)};
-      // A square of 8 pixels holds each of them.
+      // Each of them fits into a square of 8 pixels.
       for (Vector& p : ring) p = p - least + Vector{x * 8.1 + 0.05, y * 8.1 + 0.05};
       polygons.push_back(ring);
     }
@@ -287,7 +287,7 @@ TEST(Exaggeration, TwoThatGrowTowardsEachOtherShareTheVoid) {
 
 TEST(Exaggeration, OneThatNeedsLessLeavesTheRestToTheOther) {
   const auto layer = layer_with({rectangle(0, 0, 20, 1), rectangle(0, 3, 20, 4.8)});
-  const Grown grown(*layer, 5);  // by 2, and by 0.1, into a void of 2
+  const Grown grown(*layer, 5);  // by 2, and by 0.1, into a gap of 2
   EXPECT_EQ(grown.face_grown_over({10, 2.85}), 0);
   EXPECT_EQ(grown.face_grown_over({10, 2.95}), 1);
 }
@@ -332,7 +332,7 @@ TEST(Exaggeration, ARiverGrowsOverFieldsAndNotOverANarrowStrip) {
 }
 
 TEST(Exaggeration, AFieldKeepsTheWidthItself) {
-  // Rivers at both sides of a field of 5 pixels, which may lose one in all.
+  // Rivers on both sides of a field of 5 pixels, which may lose one pixel in all.
   const auto layer =
       layer_with({rectangle(0, 0, 40, 1), rectangle(0, 1, 40, 5), rectangle(0, 6, 40, 1)}, true);
   const Grown grown(*layer, 4);

@@ -7,7 +7,7 @@
 namespace trapeze {
 namespace {
 
-/// A mesh made of parallelograms and boxes, written down one by one.
+/// A mesh of parallelograms and boxes, specified one by one.
 struct Mesh {
   std::vector<Point> vertices;
   std::vector<MeshEdge> edges;
@@ -15,7 +15,8 @@ struct Mesh {
 
   void add(const Box& box) { append_box(box, vertices, edges, trapezoids); }
 
-  /// Its west side leans from x `from` at the top to x `to` at the bottom, its east side is far.
+  /// The west side runs from x `from` at the top to x `to` at the bottom; the east side is far
+  /// away.
   void add_leaning(std::int32_t from, std::int32_t to, std::int32_t top, std::int32_t bottom) {
     const auto first = static_cast<std::uint32_t>(vertices.size());
     const auto edge = static_cast<std::uint32_t>(edges.size());
@@ -61,10 +62,10 @@ TEST(CoverBoxTest, ASideInTheBoxIsNotCovered) {
   mesh.add({1001, 0, 5000, 5000});
   EXPECT_FALSE(mesh.covers(kTile));
   Mesh leaning;
-  leaning.add_leaning(0, 1900, 0, 2000);  // at the bottom of the box it is in the middle of it
+  leaning.add_leaning(0, 1900, 0, 2000);  // crosses the middle of the box at its bottom
   EXPECT_FALSE(leaning.covers(kTile));
   Mesh leaning_beyond;
-  leaning_beyond.add_leaning(0, 1500, 0, 2000);  // it enters the box only below
+  leaning_beyond.add_leaning(0, 1500, 0, 2000);  // enters the box only below it
   EXPECT_TRUE(leaning_beyond.covers(kTile));
 }
 
@@ -74,7 +75,7 @@ TEST(CoverBoxTest, AStripThatEndsWithinIsNotCovered) {
   EXPECT_FALSE(mesh.covers(kTile));
 }
 
-/// The index against looking at every trapezoid.
+/// Compares the index with a test of every trapezoid.
 TEST(MeshIndexTest, SelectsWhatMeetsTheBoxAndIsAlive) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);

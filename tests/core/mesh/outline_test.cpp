@@ -69,7 +69,7 @@ Rings square(std::int32_t x, std::int32_t y, std::int32_t side) {
   return rings;
 }
 
-/// A circle made rough at all scales, by putting the middle of every edge beside it.
+/// A circle with roughness at all scales, made by moving the midpoint of every edge sideways.
 Rings rough_coast(unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> beside(0, 0.22);
@@ -119,11 +119,11 @@ TEST(OutlineTest, EdgesHaveTheSizeOfTheirLoop) {
 }
 
 TEST(OutlineTest, EdgesBetweenFeaturesHaveTheSizeOfTheLargerLoop) {
-  // A small one at the side of a large one, and one that lies in it.
+  // A small square at the side of a large one, and one that lies inside it.
   Rings large = square(0, 0, 1000);
   large.add(square(300, 300, 100)[0]);
   const auto layer = coverage_of({large, square(1000, 200, 50), square(300, 300, 100)});
-  std::map<std::int32_t, LoopSize> by_x;  // of edges that lead down
+  std::map<std::int32_t, LoopSize> by_x;  // edges that lead down
   for (const std::uint32_t edge : edges_at(*layer, 0)) {
     const MeshEdge& ends = layer->mesh().edges[edge];
     const Point upper = layer->mesh().vertices[ends.upper];
@@ -137,11 +137,11 @@ TEST(OutlineTest, EdgesBetweenFeaturesHaveTheSizeOfTheLargerLoop) {
 }
 
 struct Joints {
-  std::size_t count = 0;   // of vertices between two edges
-  std::size_t broken = 0;  // where the lengths of the two are different
+  std::size_t count = 0;   // vertices between two edges
+  std::size_t broken = 0;  // vertices whose two edges have different lengths
 };
 
-/// Of those where no loop begins and none meet.
+/// Only for vertices where no loop begins and no loops meet.
 Joints joints_at(const Layer& layer, Level level) {
   std::map<std::uint32_t, std::vector<double>> along;  // by vertex
   for (const std::uint32_t edge : edges_at(layer, level)) {

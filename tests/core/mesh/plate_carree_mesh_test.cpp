@@ -74,7 +74,7 @@ TEST(PlateCarreeMeshTest, NeighboursNeitherOverlapNorGape) {
   }
 }
 
-// Points of the sides, put back on the grid, are near the edge that they stand for.
+// Points of the sides, converted back to the grid, are near the edges that the sides represent.
 TEST(PlateCarreeMeshTest, SidesAreNearTheirCurves) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -101,7 +101,7 @@ TEST(PlateCarreeMeshTest, SidesAreNearTheirCurves) {
             view.vertices[t.top].y +
             part * (static_cast<double>(view.vertices[t.bottom].y) - view.vertices[t.top].y);
         const double y = mercator_from_plate_carree(row);
-        // From where the side is to where the edge is, in cells of plate carree, upwards.
+        // The vertical distance from the side to the edge, in cells of plate carree, upwards.
         const double off =
             std::abs(side.x_at(row) - edge.x_at(y)) / (slope * mercator_stretch(y) + 1);
         worst = std::max(worst, off / kCellsPerRow);

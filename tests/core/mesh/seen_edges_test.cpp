@@ -11,8 +11,8 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
-// A square of 100 cells (edges 0 and 1, horizontal edges 4 and 5), and a triangle over it whose
-// sides are edges 2 and 3.
+// A square of 100 cells (edges 0 and 1, horizontal edges 4 and 5), and a triangle over it with the
+// sides 2 and 3.
 const std::vector<Point> kVertices = {{0, 0},    {0, 100},  {100, 0}, {100, 100},
                                       {50, -50}, {-50, 50}, {150, 50}};
 const std::vector<MeshEdge> kEdges = {{0, 1}, {2, 3}, {4, 5}, {4, 6}, {0, 2}, {1, 3}};
@@ -64,7 +64,7 @@ TEST(SeenEdgesTest, SidesOfWhatLiesOverAreNotItsOwn) {
 }
 
 TEST(SeenEdgesTest, WhereTheyEndBeyondTheBoxDoesNotMatter) {
-  // Of the sides, only what lies below 50 is seen.
+  // The sides are visible only below 50.
   const std::vector<TrapezoidPart> parts = parts_below(0);
   const auto seen_in = [&](const Box& box, const std::vector<TrapezoidPart>& visible) {
     std::vector<SeenEdge> seen;
@@ -80,14 +80,14 @@ TEST(SeenEdgesTest, WhereTheyEndBeyondTheBoxDoesNotMatter) {
 }
 
 TEST(SeenEdgesTest, NorDoesItForSlantedAndHorizontalOnes) {
-  // The triangle alone: of its left side, which runs from (50, -50) to (-50, 50).
+  // The triangle alone, and its left side, which runs from (50, -50) to (-50, 50).
   const auto slanted = [](const Box& box, std::int32_t top, std::int32_t bottom) {
     const std::vector<TrapezoidPart> parts = {{top, bottom, 2, 3, 1}};
     std::vector<SeenEdge> seen;
     append_seen_sides(kMesh, std::vector<std::uint32_t>{2}, {parts, box}, seen);
     return seen;
   };
-  const Box box{-10, -100, 10, 100};  // which it is in from -10 to 10
+  const Box box{-10, -100, 10, 100};  // crosses this box from -10 to 10
   EXPECT_THAT(slanted(box, -30, 20), ElementsAre(SeenEdge{2, {50, -50}, {-50, 50}, 1}));
   EXPECT_THAT(slanted(box, -5, 20), ElementsAre(SeenEdge{2, {5, -5}, {-50, 50}, 1}));
   EXPECT_THAT(slanted(box, -40, 6), ElementsAre(SeenEdge{2, {50, -50}, {-6, 6}, 1}));

@@ -33,7 +33,7 @@ double area_of(const MeshView& mesh, const TrapezoidPart& part) {
          (static_cast<double>(part.bottom) - part.top);
 }
 
-/// The shares of the parts that hold the point, most often one.
+/// The shares of the parts that contain the point, usually one.
 std::vector<float> shares_at(const MeshView& mesh, std::span<const TrapezoidPart> parts, double x,
                              double y) {
   std::vector<float> shares;
@@ -50,7 +50,7 @@ struct Cut {
   VisibleParts parts;
 };
 
-/// The first of the polygons, covered by all others.
+/// The first polygon, covered by all others.
 Cut cut_first(std::vector<Rings> polygons, float share) {
   Cut cut{layer_of(std::move(polygons)), {}};
   const MeshView& mesh = cut.layer->mesh();
@@ -110,7 +110,7 @@ TEST(VisiblePartsTest, ThroughWhatLiesOverItAShareIsSeen) {
 }
 
 TEST(VisiblePartsTest, BelowMoreThanCanBeToldFromEachOtherThereIsNothing) {
-  constexpr int kDepth = 8;  // of halves: 1/256, and 1/512 would be less than kLeastShare
+  constexpr int kDepth = 8;  // halvings: 1/256, as 1/512 would be less than kLeastShare
   std::mt19937 random(5);
   std::vector<Rings> polygons(1);
   polygons.front().add(std::vector<Point>{{-50, -50}, {50, -50}, {50, 50}, {-50, 50}});
@@ -154,7 +154,7 @@ TEST(VisiblePartsTest, OfStarsEveryPointIsSeenAsOftenAsThereIsNothingAbove) {
         if (left > 0) expected.push_back(left);
         ++(left > 0 ? seen : hidden);
       }
-      // Heights are rounded to cells: a point may lie in a sliver beside a crossing.
+      // Heights are rounded to cells, so a point may lie in a sliver beside a crossing.
       const auto shares = [&](double dx) {
         return shares_at(cut.layer->mesh(), cut.parts.parts(), x + dx, y);
       };
@@ -177,7 +177,7 @@ TEST(VisiblePartsTest, PartsAndWhatCutThemAddUp) {
     const double whole = area_of(cut_first({stars[0]}, 0));
     const Cut halved = cut_first(stars, 0.5F);
     const Cut cut = cut_first(stars, 0);
-    // What is seen through the other and what is seen without it is all there is.
+    // The area visible through the other polygon plus the area visible without it is the whole.
     EXPECT_NEAR(area_of(halved), whole, 1e-6 * whole) << seed;
     EXPECT_LT(area_of(cut), whole) << seed;
   }

@@ -1,4 +1,4 @@
-// Trapezoids as they are drawn, by their coordinates: what a graph and its history are compared by.
+// Trapezoids as they are drawn, by their coordinates, to compare a graph with its history.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,15 @@
 
 namespace trapeze {
 
-/// A row of features, the top and bottom y of a trapezoid, and the ends of its left and right edge.
+/// The row of a feature, the top and bottom y of a trapezoid, and the ends of its left and right
+/// edge.
 using Drawn = std::tuple<std::uint32_t, int, int, int, int, int, int, int, int, int, int>;
 
 inline Drawn drawn(std::uint32_t row, int top, int bottom, Point lu, Point ll, Point ru, Point rl) {
   return {row, top, bottom, lu.x, lu.y, ll.x, ll.y, ru.x, ru.y, rl.x, rl.y};
 }
 
-/// The trapezoids of positive height inside the graph, whose face f is that of rows[f - 1].
+/// The trapezoids of positive height inside the graph; face f is that of rows[f - 1].
 inline std::multiset<Drawn> inside_of(const TrapezoidalGraph& g, const FaceFeatures& rows) {
   std::multiset<Drawn> found;
   for (const NodeId n : g.inside_nodes()) {

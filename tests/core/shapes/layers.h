@@ -1,4 +1,4 @@
-// Layers of polygons given by rings.
+// Layers of polygons given as rings.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace trapeze {
 
-/// A layer with a feature of each of the polygons, in this order; nothing is known of it but its
-/// number, from 1 on.
+/// A layer with one feature for each polygon, in this order. The features have no attributes; their
+/// ids count from 1.
 inline std::unique_ptr<Layer> layer_of(std::vector<Rings> polygons,
                                        const LayerOptions& options = {}) {
   FeatureTable features((std::vector<Field>()));

@@ -1,4 +1,4 @@
-// Maps of many features, of which some share borders and others lie over each other.
+// Maps of many features; some share borders and others overlap each other.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,7 @@ inline Rings moved_by(Rings rings, Point by) {
   return rings;
 }
 
-/// Square parcels, `side` of them on a side, whose corners are where chance puts them; neighbours
-/// share borders.
+/// Square parcels, `side` of them on a side, with random corners; neighbours share borders.
 inline void add_block(std::mt19937& random, Point at, int side, Map& map) {
   constexpr int kSize = 400;
   std::uniform_int_distribution<int> jitter(-kSize / 4, kSize / 4);
@@ -40,7 +39,7 @@ inline void add_block(std::mt19937& random, Point at, int side, Map& map) {
   }
 }
 
-/// Shapes of all kinds over each other, some of them several times, and blocks of parcels.
+/// Overlapping shapes of all kinds, some of them repeated, and blocks of parcels.
 inline Map sample_map(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> place(-20000, 20000);

@@ -1,5 +1,5 @@
-// A polygon whose vertices have names of one letter, and its graph, so that tests can speak of both
-// by geometry: a trapezoid is "A-B" by its top and bottom vertex, or in full "A-B AC|DB" with its
+// A polygon whose vertices have names of one letter, and its graph, so that tests can refer to both
+// by geometry. A trapezoid is "A-B" by its top and bottom vertex, or in full "A-B AC|DB" with its
 // left and right edge, each from its upper to its lower end.
 #pragma once
 
@@ -19,8 +19,9 @@ namespace trapeze {
 
 class NamedPolygon {
  public:
-  /// Vertices as "name x y" separated by commas, rings by semicolons; rings neither cross nor have
-  /// a vertex on an edge. A vertex where rings touch is named once and after that by the same name.
+  /// Vertices as "name x y" separated by commas, rings by semicolons. Rings do not cross, and have
+  /// no vertex on an edge. A vertex where rings touch is defined once and then referred to by its
+  /// name.
   explicit NamedPolygon(const std::string& text) {
     Rings rings;
     std::istringstream rings_in(text);
@@ -59,7 +60,7 @@ class NamedPolygon {
     return found == names_.end() ? "?" : std::string(1, found->first);
   }
 
-  /// The corner of that vertex in the loop that goes through `other` too, if one is named.
+  /// The corner of that vertex, in the loop that also passes through `other` if one is named.
   CornerId corner(char vertex, char other = 0) const {
     for (std::size_t i = 0; i < graph.corners().size(); ++i) {
       const CornerId c(i);
@@ -91,7 +92,7 @@ class NamedPolygon {
       const VertexId top_a = graph.node(a).end[kUp];
       const VertexId top_b = graph.node(b).end[kUp];
       if (top_a != top_b) return top_a < top_b;
-      // Of two that begin at one vertex, the left one is left of an edge that begins there as well.
+      // If two trapezoids begin at one vertex, the right edge of the left one begins there as well.
       return graph.edge(graph.node(a).edge[kRight]).end[kUp] == top_a &&
              graph.edge(graph.node(b).edge[kRight]).end[kUp] != top_b;
     });

@@ -32,8 +32,8 @@ inline Rings rings_from_text(const std::string& text) {
   return rings;
 }
 
-/// Twice the area by even-odd of rings that do not cross: outer rings minus holes, by nesting
-/// depth. Independent of the code under test; O(n^2).
+/// Twice the even-odd area of rings that do not cross: outer rings minus holes, by nesting depth.
+/// Independent of the code under test; O(n^2).
 inline std::int64_t doubled_area_of(std::span<const Point> ring) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -44,8 +44,8 @@ inline std::int64_t doubled_area_of(std::span<const Point> ring) {
   return sum < 0 ? -sum : sum;
 }
 
-/// Even-odd; the point lies between cells, so that no vertex is level with it. Independent of the
-/// code under test.
+/// Even-odd; the point lies between cells, so no vertex has its y. Independent of the code under
+/// test.
 inline bool is_inside(const Rings& rings, double x, double y) {
   bool is_inside = false;
   for (std::size_t r = 0; r < rings.size(); ++r) {

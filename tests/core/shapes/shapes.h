@@ -1,4 +1,4 @@
-// Random polygons of many kinds for property tests; every shape is a function of its seed.
+// Random polygons of many kinds for property tests; each shape is determined by its seed.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace trapeze {
 
-/// Stars with holes and islands, combs, spirals, nested squares with touching corners, scribbles:
-/// by seed.
+/// Stars with holes and islands, combs, spirals, nested squares with touching corners, scribbles,
+/// chosen by the seed.
 inline Rings random_shape(unsigned seed) {
   std::mt19937 random(seed);
   const auto between = [&](int a, int b) {

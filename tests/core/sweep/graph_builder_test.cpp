@@ -172,7 +172,7 @@ TEST(GraphBuilder, RandomScribblesAreNodedToValidGraphs) {
   }
 }
 
-/// A ring that goes to and fro between the sides of a square, then up and down.
+/// A ring that goes back and forth between the sides of a square, then up and down.
 Rings lattice(std::int32_t lines) {
   Rings rings;
   const std::int32_t side = 10 * lines + 10;

@@ -33,7 +33,7 @@ void append_end_within(Point p, const Segment& s, std::vector<Point>& points) {
   if (box_of(s).intersects(Box{p.x, p.y, p.x, p.y})) points.push_back(p);
 }
 
-/// Each with each.
+/// Tests every pair.
 std::vector<Point> meetings_of_pairs(const std::vector<Segment>& segments) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -85,7 +85,7 @@ TEST(Meetings, SegmentsThatCoincideOrOverlapDoNotHideOthers) {
     auto segments = random_segments(seed, 12, 6);
     const auto copies = segments;
     segments.insert(segments.end(), copies.begin(), copies.begin() + 6);
-    // Twice as long and more, on the same line.
+    // Segments on the same line, at least twice as long.
     for (std::size_t i = 6; i < 12; ++i) {
       const auto [a, b] = copies[i];
       segments.push_back({a, {3 * b.x - 2 * a.x, 3 * b.y - 2 * a.y}});
@@ -99,8 +99,8 @@ TEST(Meetings, CommonEndsAreNone) {
               IsEmpty());
 }
 
-// All of them share an end, and so do their boxes: looking at every two whose boxes meet would take
-// some minutes.
+// All segments share an end, and their boxes overlap there: testing every pair with overlapping
+// boxes would take minutes.
 TEST(Meetings, SpokesOfAWheelAreFewSteps) {
   std::vector<Segment> spokes;
   for (std::int32_t i = 0; i < 200'000; ++i) spokes.push_back({{0, 0}, {1'000'000 - i, i}});

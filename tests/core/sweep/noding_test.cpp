@@ -14,7 +14,7 @@ namespace {
 constexpr std::int32_t kMin = kGridMin;
 constexpr std::int32_t kMax = kGridMax;
 
-/// Pieces with their upper end first, whatever their order.
+/// Pieces with their upper end first, in any order.
 std::multiset<std::vector<std::int32_t>> as_set(const std::vector<Segment>& segments) {
   std::multiset<std::vector<std::int32_t>> found;
   for (const auto& [a, b] : segments) {
@@ -36,7 +36,7 @@ void expect_noded(const std::vector<Segment>& segments, const std::vector<Segmen
   }
 }
 
-/// Meet somewhere else than at a common end; exact, and nothing but orientations.
+/// Whether they meet anywhere else than at a shared end; exact, using orientations only.
 bool cross_or_touch(const Segment& s, const Segment& t) {
   const auto sign = [](std::int64_t v) { return (v > 0) - (v < 0); };
   const auto side = [&](const Segment& l, Point p) {
@@ -84,8 +84,8 @@ TEST(Noding, ACommonEndIsNoCrossing) {
   expect_noded(corner, corner);
 }
 
-// The first two cross in the middle of the cell (50, 50); the third passes that cell at its right
-// side and is bent to its centre, so that no sliver is left between the three crossings.
+// The first two cross in the middle of the cell (50, 50). The third passes that cell at its right
+// side and is bent to its centre, so that no sliver remains between the three crossings.
 TEST(Noding, ThreeSegmentsThroughOneCellMeetInItsCentre) {
   expect_noded({{{0, 0}, {100, 100}}, {{0, 100}, {100, 0}}, {{48, 0}, {52, 101}}},
                {{{0, 0}, {50, 50}},
@@ -97,7 +97,7 @@ TEST(Noding, ThreeSegmentsThroughOneCellMeetInItsCentre) {
 }
 
 TEST(Noding, SegmentsOverTheWholeGridAreExact) {
-  // Nearly parallel: they part by one cell over the whole world.
+  // Nearly parallel: they diverge by one cell over the whole world.
   expect_noded({{{kMin, kMin}, {kMax, kMax}}, {{kMin, kMin + 1}, {kMax, kMax - 1}}},
                {{{kMin, kMin}, {0, 0}},
                 {{0, 0}, {kMax, kMax}},
@@ -133,7 +133,7 @@ TEST(Noding, NothingCrossesOrTouchesAfterwards) {
   }
 }
 
-// Every point that had an odd number of segments keeps one, so rings stay closed.
+// Every point with an odd number of segments keeps an odd number, so rings stay closed.
 TEST(Noding, RingsStayClosed) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -1,4 +1,4 @@
-// What is built by several threads is what one makes.
+// Several threads build the same as a single thread.
 #include "core/sweep/sweep_slabs.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 constexpr unsigned kThreads[] = {2, 3, 8};
 
 /// Parcels in columns and rows, with bent borders that neighbours share, or that cross. Every third
-/// row of corners is straight, so that many vertices are level.
+/// row of corners is straight, so that many vertices have the same y.
 std::vector<Rings> parcels(int side, bool do_cross) {
   constexpr int kSize = 1000;
   constexpr int kPieces = 4;  // of a border
@@ -29,7 +29,7 @@ std::vector<Rings> parcels(int side, bool do_cross) {
   const auto bent = [&random](int most) {
     return static_cast<std::int32_t>(random() % (2u * static_cast<unsigned>(most) + 1)) - most;
   };
-  // The points from which borders lead to the right and down, and those within them.
+  // The points where borders start to the right and down, and the points along these borders.
   const auto at = [&](int column, int row) { return column * (side + 1) + row; };
   std::vector<std::vector<Point>> across;
   std::vector<std::vector<Point>> down;
@@ -113,7 +113,7 @@ TEST(SweepSlabs, MeetingsDoNotDependOnTheNumberOfThreads) {
 
 TEST(SweepSlabs, WhatIsNotNodedIsRefusedByAnyNumberOfThreads) {
   const FaceBeyond next = [](EdgeId, FaceId left) { return left + 1; };
-  // A cross far down, below segments that do not meet.
+  // A crossing far down, below segments that do not meet.
   std::vector<Segment> segments;
   for (std::int32_t i = 0; i < 40'000; ++i) segments.push_back({{0, 10 * i}, {5, 10 * i + 5}});
   segments.push_back({{100, 390'000}, {200, 390'100}});

@@ -1,4 +1,4 @@
-// Land of real places becomes blocks of one use each.
+// Land use polygons of real places become blocks of one use each.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@
 namespace trapeze {
 namespace {
 
-/// Of the features that have polygons.
+/// For the features that have polygons.
 std::vector<std::uint64_t> classes_of_source(const std::string& path,
                                              const std::string& attribute) {
   FeatureSource source(path);

@@ -1,4 +1,4 @@
-// Real coverages stay coverages at every zoom and at odd tolerances.
+// Real coverages stay coverages at every zoom and at arbitrary tolerances.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,10 +30,10 @@ using testing::epsilon_of_zoom;
 using testing::GeosValidity;
 using testing::rings_of_source;
 
-// GEOS looks at every hole of a polygon together with every other: minutes for ten thousands.
+// GEOS compares every hole of a polygon with every other: minutes for ten thousands.
 constexpr std::size_t kMaxHolesForGeos = 500;
 
-/// Those of all zooms, and ten that are of none, in ascending order.
+/// Those of all zooms, and ten that belong to no zoom, in ascending order.
 std::vector<double> tolerances() {
   std::vector<double> epsilons;
   for (int zoom = 0; zoom <= 22; ++zoom) epsilons.push_back(epsilon_of_zoom(zoom));
@@ -51,7 +51,7 @@ Step step(Point a, Point b) {
   return {a.x, a.y, b.x, b.y};
 }
 
-/// Bounded places that nothing covers.
+/// Bounded regions that no feature covers.
 std::size_t count_holes(const TrapezoidalGraph& graph) {
   const Regions regions(graph);
   return static_cast<std::size_t>(std::count(regions.face.begin(), regions.face.end(), kOutside)) -
@@ -150,7 +150,7 @@ struct CoverageFile {
   bool is_sample = false;  // in the folder that script/server fills, not in that of TRAPEZE_DATA
 };
 
-/// Empty if it is not there, with the reason.
+/// Empty if the file does not exist, with the reason.
 std::filesystem::path path_of(const CoverageFile& file, std::string& reason) {
   const char* folder = file.is_sample ? TRAPEZE_SAMPLE : std::getenv("TRAPEZE_DATA");
   if (folder == nullptr) {
@@ -204,7 +204,7 @@ INSTANTIATE_TEST_SUITE_P(Files, CoverageDataTest,
 TEST(RealLayers, AreTheSameWhateverTheNumberOfThreads) {
   const char* folder = std::getenv("TRAPEZE_DATA");
   if (folder == nullptr) GTEST_SKIP() << "TRAPEZE_DATA is not set";
-  // Two with shared borders, and one of a single polygon.
+  // Two files with shared borders, and one with a single polygon.
   for (const char* name : {"europe_countries.fgb", "us_counties.fgb", "kobroor.fgb"}) {
     LoadOptions options;
     options.generalization.coverage = CoverageMode::automatic;

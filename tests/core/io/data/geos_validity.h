@@ -1,4 +1,4 @@
-// What GEOS, which is not ours, says of polygons of ours.
+// What GEOS, an independent library, reports about our polygons.
 #pragma once
 
 #include <geos_c.h>
@@ -12,7 +12,7 @@
 
 namespace trapeze::testing {
 
-/// One thread's use of GEOS.
+/// Access to GEOS for one thread.
 class GeosValidity {
  public:
   GeosValidity();
@@ -20,8 +20,9 @@ class GeosValidity {
   GeosValidity(const GeosValidity&) = delete;
   GeosValidity& operator=(const GeosValidity&) = delete;
 
-  /// Empty if the polygon is valid whose shell is rings[begin] and whose holes are those up to
-  /// `end`, otherwise why not. Every hole is looked at with every other: minutes for ten thousands.
+  /// Returns an empty text if the polygon with the shell rings[begin] and the holes up to `end` is
+  /// valid, otherwise the reason. GEOS compares every hole with every other: minutes for ten
+  /// thousands.
   std::string complaint(const Rings& rings, std::size_t begin, std::size_t end) const;
 
  private:

@@ -23,7 +23,7 @@ void PrintTo(const Expected& expected, std::ostream* out) {
   *out << expected.file;
 }
 
-// The figures of the data's own description, counted there by other means.
+// The figures of the data's own description, which were counted by other means.
 constexpr Expected kFiles[] = {
     {"shenzhen_buildings.fgb", 59'419, 59'419, 574'196, 0},
     {"shenzhen_water.fgb", 143, 143, 2'257, 78},
@@ -58,8 +58,8 @@ TEST_P(RealDataTest, EveryFeatureIsLoadedOrAccountedFor) {
   EXPECT_EQ(report.loaded + report.empty, report.features);
   EXPECT_EQ(report.skipped, 0u);
   EXPECT_EQ(loaded.layer->features().size(), report.features);
-  // What collapses on a grid of two centimetres has no area to speak of; of the fixtures made to
-  // be degenerate, some have none to begin with.
+  // Polygons that collapse on a grid of two centimetres have a negligible area. Some of the
+  // deliberately degenerate fixtures have none to begin with.
   EXPECT_LE(report.empty, 5u);
 }
 

@@ -1,4 +1,5 @@
-// Graphs of real polygons: exact areas, the way back, random jumps, and lifespans, file by file.
+// Graphs of real polygons: exact areas, reverted removals, random jumps, and lifespans, file by
+// file.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +21,7 @@
 namespace trapeze {
 namespace {
 
-// Of small features some are taken, spread over the file; of large ones all.
+// All large features are tested, and a sample of the small ones spread over the file.
 constexpr std::size_t kLargeFeature = 2000;  // points
 constexpr std::size_t kSampledFeatures = 60;
 constexpr int kJumpsPerFeature = 20;
@@ -36,7 +37,7 @@ Int128 doubled_area_of_ring(std::span<const Point> ring) {
   return sum;
 }
 
-/// By the parity of the edges right of it; exact.
+/// By the parity of the edges to the right; exact.
 bool is_inside(Point p, std::span<const Point> ring) {
   bool inside = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -48,7 +49,7 @@ bool is_inside(Point p, std::span<const Point> ring) {
   return inside;
 }
 
-/// Rings that neither cross nor touch: each counts by how many others it lies in.
+/// For rings that neither cross nor touch: the sign of each depends on how many others contain it.
 Int128 area_by_nesting(const Rings& rings) {
   Int128 sum = 0;
   for (std::size_t r = 0; r < rings.size(); ++r) {
@@ -62,7 +63,7 @@ Int128 area_by_nesting(const Rings& rings) {
   return sum;
 }
 
-/// Which trapezoids there are, whatever their order: how many, and the sum of their hashes.
+/// Identifies a set of trapezoids in any order: their number, and the sum of their hashes.
 struct Fingerprint {
   std::size_t count = 0;
   std::uint64_t sum = 0;
@@ -171,13 +172,12 @@ TEST_P(RealGraphTest, AreasAreExactAndEveryWayLeadsToTheSameGraph) {
     const BuildOutcome outcome = builder.build(features[i], graph);
     ASSERT_EQ(outcome.failure, "");
     if (!outcome.built) continue;
-    // What was noded has other rings than came in, and of rings that touch nesting tells little;
-    // there the sum over all edges, which check_graph makes, has to do.
+    // Noded features have other rings than the input, and nesting says little about rings that
+    // touch. For these the sum over all edges, which check_graph computes, has to do.
     const bool is_as_it_came = !outcome.noded && graph.vertex_count() == features[i].points.size();
     EXPECT_EQ(check_graph(graph), "");
     if (is_as_it_came) expect_exact_area(graph, features[i]);
-    // The giants have holes that touch; their rings are run through shells one way, holes the
-    // other.
+    // The giants have holes that touch; their shells run one way, their holes the other.
     if (!outcome.noded && is_large) expect_area_of_orientation(graph, features[i]);
     ++exact;
     if (!is_large && i % stride != 0) continue;

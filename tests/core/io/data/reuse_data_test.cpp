@@ -1,5 +1,5 @@
-// Real layers that are edited: what takes over from the layer before is the file that is prepared
-// anew.
+// Real layers that are edited: a file that takes over from the previous layer equals one that is
+// prepared from scratch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// A layer in memory that can be changed and written.
+/// An in-memory layer that can be changed and written.
 class EditedLayer {
  public:
   explicit EditedLayer(const std::string& path) {
@@ -47,7 +47,7 @@ class EditedLayer {
     const GDALDatasetUniquePtr out(driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
     OGRLayer& from = *source_->GetLayer(0);
     CPLStringList options;
-    options.SetNameValue("SPATIAL_INDEX", "NO");  // which would put them in another order
+    options.SetNameValue("SPATIAL_INDEX", "NO");  // it would put them in another order
     OGRLayer* layer = out->CreateLayer("edited", from.GetSpatialRef(), wkbUnknown, options.List());
     OGRFeatureDefn& definition = *from.GetLayerDefn();
     for (int i = 0; i < definition.GetFieldCount(); ++i) {
@@ -60,7 +60,7 @@ class EditedLayer {
     }
   }
 
-  /// Changes one feature, or the order.
+  /// Changes one feature, or the order of features.
   void edit(std::mt19937& random) {
     const auto below = [&random](std::size_t end) {
       return std::uniform_int_distribution<std::size_t>(0, end - 1)(random);
@@ -71,7 +71,7 @@ class EditedLayer {
       case 0:
         features_.erase(place);
         break;
-      case 1:  // over the one that is there
+      case 1:  // over the existing one
         features_.emplace(features_.begin() + static_cast<std::ptrdiff_t>(below(features_.size())),
                           features_[at]->Clone());
         break;
@@ -109,7 +109,7 @@ using Case = std::tuple<std::string, CoverageMode>;
 
 class ReuseDataTest : public ::testing::TestWithParam<Case> {
  protected:
-  /// Prepares what was written last; returns the file.
+  /// Prepares the source written last; returns the prepared file.
   std::string prepare(const std::string& name, const EarlierPrepared& earlier, unsigned threads) {
     LoadOptions options;
     options.generalization.coverage = std::get<CoverageMode>(GetParam());
@@ -148,7 +148,7 @@ TEST_P(ReuseDataTest, IsTheFileThatIsPreparedAnew) {
     if (std::get<CoverageMode>(GetParam()) == CoverageMode::off) {
       EXPECT_GE(loaded_.report.taken_over + 20, loaded_.report.loaded);
     }
-    // In turns from a layer in memory, and from one that is mapped.
+    // Alternates between an in-memory layer and a memory-mapped one.
     if (step % 2 == 0) {
       before = open_earlier_layer(folder_.file("reused.trapeze"),
                                   {{}, std::get<CoverageMode>(GetParam()), 0});

@@ -1,4 +1,4 @@
-// The polygons of a file as rings, before any graph is made of them, and the tolerances of zooms.
+// The polygons of a file as rings, before any graph is built, and the tolerances of zooms.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace trapeze::testing {
 
-/// Of each feature that has polygons. A feature that cannot be read fails the test.
+/// The rings of each feature that has polygons. A feature that cannot be read fails the test.
 std::vector<Rings> rings_of_source(const std::string& path);
 
-/// What tiles of this zoom are simplified with if nobody says otherwise, in cells: 0.25 of their
-/// 256 pixels a side, as the nearest level has it.
+/// The default simplification tolerance for tiles of this zoom, in cells: 0.25 of their 256 pixels
+/// a side, rounded to the nearest level.
 double epsilon_of_zoom(int zoom);
 
 }  // namespace trapeze::testing

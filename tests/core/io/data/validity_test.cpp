@@ -1,5 +1,5 @@
-// What is left of real polygons is valid at every zoom, and hardly more than Douglas-Peucker
-// leaves.
+// Simplified real polygons are valid at every zoom, and have hardly more vertices than with
+// Douglas-Peucker.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,19 +31,19 @@ using testing::GeosValidity;
 using testing::rings_of_source;
 
 constexpr int kFinestZoom = 22;
-// GEOS looks at every hole of a polygon together with every other: minutes for ten thousands.
+// GEOS compares every hole of a polygon with every other: minutes for ten thousands.
 constexpr std::size_t kMaxHolesForGeos = 2000;
-// The share held by the topology test is looked at once there are enough vertices to speak of one.
+// The share held by the topology test is checked only with enough vertices to be meaningful.
 constexpr std::size_t kEnoughVertices = 1000;
 
-/// Of all features of a file at one zoom.
+/// For all features of a file at one zoom.
 struct Tally {
   std::size_t features = 0;
   std::size_t polygons = 0;
   std::size_t rings = 0;
   std::size_t kept = 0;     // vertices
   std::size_t plain = 0;    // vertices that plain Douglas-Peucker keeps
-  std::size_t by_geos = 0;  // polygons that GEOS judged; the others were judged by their graph
+  std::size_t by_geos = 0;  // polygons judged by GEOS; the others were judged by their graph
 
   void add(const Tally& other) {
     features += other.features;
@@ -62,7 +62,7 @@ struct Tally {
 
 using Tallies = std::array<Tally, kFinestZoom + 1>;
 
-/// The loops of a graph as it was built, and what Douglas-Peucker makes of each on its own.
+/// The original loops of a graph, and the result of Douglas-Peucker for each of them alone.
 class OriginalLoops {
  public:
   explicit OriginalLoops(const TrapezoidalGraph& graph) {
@@ -92,7 +92,7 @@ class OriginalLoops {
     return sum;
   }
 
-  /// All loops but those that have been eliminated: no corner of them is left.
+  /// The number of loops that still have a corner, that is, have not been eliminated.
   std::size_t loops_left(const TrapezoidalGraph& adapted) const {
     return static_cast<std::size_t>(
         std::count_if(loops_.begin(), loops_.end(), [&](const Loop& loop) {
@@ -109,8 +109,8 @@ class OriginalLoops {
   std::vector<Loop> loops_;
 };
 
-/// For polygons that GEOS cannot judge in time. Valid means: no two edges cross or overlap, no ring
-/// passes through a vertex twice, and the inside is one connected piece within one shell.
+/// For polygons that take GEOS too long. Valid means: no two edges cross or overlap, no ring passes
+/// through a vertex twice, and the inside is one connected region within one shell.
 std::string complaint_of_graph(const Rings& rings, std::size_t begin, std::size_t end) {
   Rings alone;
   for (std::size_t r = begin; r < end; ++r) alone.add(rings[r]);
@@ -127,7 +127,7 @@ std::string complaint_of_graph(const Rings& rings, std::size_t begin, std::size_
   return "";
 }
 
-/// Takes one feature from its finest to its coarsest zoom and judges what it becomes.
+/// Takes one feature from its finest to its coarsest zoom and checks each result.
 class FeatureTrial {
  public:
   FeatureTrial(const GeosValidity& geos, std::size_t feature) : geos_(geos), feature_(feature) {}
@@ -149,7 +149,7 @@ class FeatureTrial {
   }
 
  private:
-  /// Nothing below the tolerance is left but what may not go.
+  /// All remaining vertices below the tolerance are blocked.
   void expect_all_held_are_blocked(const AdaptableGraph& adaptable, int zoom) const {
     const TrapezoidalGraph& graph = adaptable.graph();
     for (std::size_t i = 0; i < graph.corners().size(); ++i) {
@@ -162,7 +162,7 @@ class FeatureTrial {
     }
   }
 
-  /// What has not changed since the zoom before is not judged again.
+  /// A result that equals that of the previous zoom is not checked again.
   void judge(const TrapezoidalGraph& graph, const OriginalLoops& loops, int zoom) {
     Rings left = rings_of(graph);
     if (has_begun_ && left.points == left_.points) return;
@@ -237,8 +237,8 @@ void PrintTo(const Trial& trial, std::ostream* out) {
 }
 
 // Three files are a little above two percent at one zoom each: 2.7 at zoom 7 (natural areas of
-// Melbourne), 2.5 at zoom 3 (the United States), 2.6 at zoom 2 (countries of Europe). All that is
-// held there is blocked for a reason, as is checked of every vertex.
+// Melbourne), 2.5 at zoom 3 (the United States), 2.6 at zoom 2 (countries of Europe). All vertices
+// held there are blocked for a reason; every one is checked.
 constexpr Trial kTrials[] = {{"shenzhen_buildings.fgb"},
                              {"shenzhen_water.fgb"},
                              {"malta_buildings.fgb"},

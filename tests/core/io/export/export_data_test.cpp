@@ -1,4 +1,4 @@
-// Real polygons written to files, and judged there as another program would.
+// Real polygons written to files, and checked as another program would read them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

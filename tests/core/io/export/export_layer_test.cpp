@@ -52,7 +52,7 @@ class Written {
 
   std::size_t size() const { return features_.size(); }
   OGRLayer& layer() const { return *layer_; }
-  /// By ascending trapeze_id.
+  /// In ascending order of trapeze_id.
   const OGRFeature& operator[](std::size_t i) const { return *features_[i]; }
 
   std::vector<std::string> texts(const char* field) const {
@@ -112,7 +112,7 @@ std::string error_of(const std::string& source, const std::string& output,
   return "no error";
 }
 
-/// Metres of EPSG:3857, which are about 54 cells each.
+/// Metres of EPSG:3857; one is about 54 cells.
 std::string metres_source(const TemporaryFolder& folder, const std::vector<TestFeature>& features) {
   const std::string path = folder.file("source.gpkg");
   write_source(path, "GPKG", {{.crs = "EPSG:3857", .features = features}});
@@ -191,7 +191,7 @@ TEST_P(ExportFormatTest, AttributesKeepTheirTypesAndEveryFeatureItsId) {
   EXPECT_EQ(flag.GetSubType(), OFSTBoolean);
 }
 
-/// The map that a file draws, feature by feature.
+/// The map stored in a file, feature by feature.
 std::vector<std::vector<PlainTrapezoid>> maps_of(const std::string& path) {
   FeatureSource source(path);
   SourceRingReader reader(source);
@@ -274,7 +274,7 @@ TEST_P(ExportFormatTest, WhatIsTooSmallIsLeftOutAndCounted) {
   EXPECT_THAT(Written(output()).texts("number"), ElementsAre("1", "3"));
 }
 
-/// Two neighbours with a jagged border, one of which has vertices on it that the other lacks.
+/// Two neighbours with a jagged border; one has vertices on it that the other lacks.
 std::vector<TestFeature> jagged_neighbours() {
   std::string down;
   std::string up;
@@ -327,7 +327,7 @@ std::vector<std::pair<double, double>> shell_of(const OGRGeometry& geometry) {
 }
 
 TEST_P(ExportFormatTest, NeighboursGetFurtherVerticesTogether) {
-  // The first one is not valid in degrees without, see below; the second one would be.
+  // Only the first polygon needs additional vertices to be valid in degrees, see below.
   const std::string source = metres_source(
       folder_, {{.wkt = "POLYGON((0 0,10000000 0,10000000 10000000,0 0),"
                         "(5010000 5000000,5100000 5000000,5100000 5050000,5010000 5000000))"},
@@ -385,7 +385,7 @@ TEST_P(ExportFormatTest, AnExistingFileIsReplacedOnlyIfAskedFor) {
   EXPECT_THAT(files_in(folder_.file("")), UnorderedElementsAre("source.gpkg", "out" + GetParam()));
 }
 
-/// While it lives, no file may grow beyond `bytes`, as on a full disk.
+/// During its lifetime no file may grow beyond `bytes`, as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
@@ -532,8 +532,8 @@ TEST(ExportLayerTest, TheOutputDoesNotDependOnTheThreads) {
   EXPECT_EQ(outputs[0], outputs[1]);
 }
 
-// The hole lies inside the long edge as it runs on the Web Mercator map, and outside of the same
-// edge drawn straight in degrees.
+// The hole lies inside the long edge as it runs on the Web Mercator map, and outside the same edge
+// drawn straight in degrees.
 TEST(ExportLayerTest, LongEdgesGetVerticesInDegreesWhereThePolygonWouldNotBeValid) {
   const TemporaryFolder folder;
   const std::string source = metres_source(
@@ -561,8 +561,8 @@ TEST(ExportLayerTest, LongEdgesGetVerticesInDegreesWhereThePolygonWouldNotBeVali
   EXPECT_TRUE(Written(output).are_all_valid());
 }
 
-// The bump of 30 metres at the side of the square is less than the tolerance, and the hole
-// reaches into it.
+// The bump of 30 metres at the side of the square is less than the tolerance, and the hole reaches
+// into it.
 TEST(ExportLayerTest, TheTopologyTestHoldsAVertexWithoutWhichTheHoleWouldCrossTheShell) {
   const TemporaryFolder folder;
   const std::string source =

@@ -1,4 +1,4 @@
-// What was exported in EPSG:3857, back on the grid.
+// An export in EPSG:3857, converted back to the grid.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -44,8 +44,8 @@ inline void append_ring(const OGRLinearRing& ring, Rings& rings) {
   rings.close_ring();
 }
 
-/// The rings of each feature, shells counterclockwise on the map and holes clockwise, by
-/// trapeze_id. What is no valid polygon fails the test.
+/// The rings of each feature by trapeze_id, shells counterclockwise on the map and holes clockwise.
+/// An invalid polygon fails the test.
 inline std::vector<Rings> exported_rings(const std::string& path) {
   const GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR));
   if (dataset == nullptr) throw std::runtime_error("cannot open " + path);
@@ -71,7 +71,7 @@ inline std::vector<Rings> exported_rings(const std::string& path) {
   return all;
 }
 
-/// By segment, how many features it bounds.
+/// For each segment, the number of features that it bounds.
 inline SegmentCounts segments_of(const std::vector<Rings>& features) {
   SegmentCounts segments;
   for (const Rings& rings : features) {

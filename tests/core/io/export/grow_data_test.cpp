@@ -1,4 +1,4 @@
-// Real polygons written grown, held to what is drawn of the same layer.
+// Real polygons exported as grown, compared with the drawing of the same layer.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -32,11 +32,11 @@ void PrintTo(const Trial& trial, std::ostream* out) {
   *out << trial.file << " at " << trial.zoom;
 }
 
-constexpr double kMostOff = 1.5;  // cells, along all of the boundary in the mean
+constexpr double kMostOff = 1.5;  // cells, on average along the whole boundary
 
 using Geometries = std::map<std::int64_t, std::unique_ptr<OGRGeometry>>;  // by trapeze_id
 
-/// Valid ones; others fail the test.
+/// Invalid geometries fail the test.
 Geometries geometries_of(const std::string& path) {
   Geometries geometries;
   const GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR));
@@ -47,7 +47,7 @@ Geometries geometries_of(const std::string& path) {
   return geometries;
 }
 
-/// Calls visit(polygon) for those of which a geometry consists.
+/// Calls visit(polygon) for each polygon of a geometry.
 template <typename Visit>
 void for_each_polygon(const OGRGeometry& geometry, const Visit& visit) {
   const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
@@ -70,7 +70,7 @@ double length_of(const OGRGeometry& geometry) {
   return sum;
 }
 
-/// What grows of a layer, as a tile of the zoom that shows all of it would have it.
+/// The grown triangles of a layer, as in a tile of the zoom that shows all of it.
 std::vector<Exaggeration::Triangle> drawn_triangles(const Layer& layer, Level level,
                                                     const Exaggeration::Size& size) {
   constexpr Box kEverywhere{kGridMin, kGridMin, kGridMax, kGridMax};
@@ -123,7 +123,7 @@ class GrowDataTest : public ::testing::TestWithParam<Trial> {
   double pixel_ = 1;  // cells
 };
 
-// Up to what rounding to cells makes of it.
+// Up to the effects of rounding to cells.
 TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
   const double cell = metres_from_grid(1, 0).x;
   options_.crs = ExportCrs::web_mercator;
@@ -187,15 +187,15 @@ TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
     const Geometry own_over_others(feature.own_over_others.UnionCascaded());
     const Geometry lost(feature.of_others_over_it.UnionCascaded());
     const double rounding = kMostOff * cell * length_of(*geometry);
-    // It is nowhere but where it was, or has grown; ...
+    // It covers only its original area and the area it has grown over; ...
     const Geometry all(before.at(id)->Union(own.get()));
     const Geometry beyond(geometry->Difference(all.get()));
     EXPECT_LE(area_of(*beyond), rounding) << "feature " << id;
-    // ... not where others grow over it, and it does not; ...
+    // ... it gives up the area that others grow over, unless it grows there as well; ...
     const Geometry gone(lost->Difference(own.get()));
     const Geometry kept(gone->Intersection(geometry.get()));
     EXPECT_LE(area_of(*kept), rounding) << "feature " << id;
-    // ... and wherever it grows over others, if these do not grow there as well.
+    // ... and it covers all it grows over, unless others grow there as well.
     const Geometry taken(own_over_others->Difference(lost.get()));
     const Geometry missing(taken->Difference(geometry.get()));
     EXPECT_LE(area_of(*missing), rounding) << "feature " << id;
@@ -203,12 +203,11 @@ TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
     const Geometry others(left->Difference(geometry.get()));
     disputed += area_of(*others);
   }
-  // What is drawn twice, as ways may cross a little between samples, is of one of the two.
+  // Areas drawn twice, as ways may cross a little between samples, belong to one of the two.
   EXPECT_LE(disputed / pixel_area, 0.05 * static_cast<double>(after.size()));
 }
 
-// Vertices that lie beside an edge would come to lie on its other side there, as it is straight
-// elsewhere.
+// An edge is straight elsewhere in degrees, so vertices beside it would end up on its other side.
 TEST_P(GrowDataTest, EverythingIsValidInDegrees) {
   options_.grow = {16, pixel_};
   const ExportReport report = export_layer(path_, folder_.file("out.gpkg"), options_);

@@ -1,4 +1,4 @@
-// Polygons written as wide as a style with grow shows them (see grow()).
+// Polygons exported as wide as a style with grow draws them (see grow()).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,12 +24,12 @@ class GrowExportTest : public testing::ReshapedExportTest {
  protected:
   GrowExportTest() { options_.grow = {4, 5 * kMetre}; }  // to 20 m
 
-  /// In square metres.
+  /// The area in square metres.
   static double area(const Rings& rings) {
     return static_cast<double>(doubled_area({rings})) / 2 / kMetre / kMetre;
   }
 
-  /// What two of the polygons cover, in square metres.
+  /// The area where two of the polygons overlap, in square metres.
   static double overlapping(const std::string& path) {
     const GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR));
     std::vector<std::unique_ptr<OGRGeometry>> all;
@@ -80,7 +80,7 @@ TEST_F(GrowExportTest, AStripIsAsWideAsAsked) {
 }
 
 TEST_F(GrowExportTest, ARiverTakesFromItsFieldsWhatItGets) {
-  // Of 6 m, with fields on both sides that end where it ends.
+  // A river 6 m wide, with fields on both sides that end where it ends.
   set_source({"(0 0,600 0,600 200,550 200,400 240,200 180,50 200,0 200,0 0)",
               "(0 200,50 200,200 180,400 240,550 200,600 200,600 206,550 206,400 246,200 186,"
               "50 206,0 206,0 200)",
@@ -95,7 +95,7 @@ TEST_F(GrowExportTest, ARiverTakesFromItsFieldsWhatItGets) {
   EXPECT_NEAR(area(after[1]) / area(before[1]), 20 / 6., 0.1);
   EXPECT_LT(area(after[0]), area(before[0]));
   EXPECT_LT(area(after[2]), area(before[2]));
-  // The river has all of its banks in common with the fields.
+  // The river shares its whole banks with the fields.
   for (const auto& [segment, count] : testing::segments_of({after[1]})) {
     const bool is_of_end = segment.first.x == segment.second.x;
     if (is_of_end) continue;
@@ -156,7 +156,7 @@ TEST_F(GrowExportTest, WhatLiesOverOthersStaysAsItIs) {
   EXPECT_NE(after[2], before[2]);
 }
 
-// A grid of strips, many of which lie across the borders of blocks.
+// A grid of strips, many of which cross block borders.
 TEST_F(GrowExportTest, DoesNotDependOnBlocksOrThreads) {
   options_.grow.pixel = kMetre;  // blocks of 512 m
   options_.grow.width = 16;

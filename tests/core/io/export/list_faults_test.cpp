@@ -24,7 +24,7 @@ std::string polygon(int id, const std::string& ring) {
          R"(,"properties":{},"geometry":{"type":"Polygon","coordinates":[)" + ring + "]}}";
 }
 
-// Features 11 and 12 with a gap between them that 13 and 14 close, of 10 m; 15 lies half on 14.
+// Features 11 and 12 with a gap of 10 m between them that 13 and 14 close; half of 15 overlaps 14.
 std::string parcels() {
   return R"({"type":"FeatureCollection","features":[)" +
          polygon(11, "[[0,0],[0.001,0],[0.001,0.001],[0,0.001],[0,0]]") + "," +

@@ -1,4 +1,4 @@
-// Exports of made shapes with round corners, or grown.
+// Exports of generated shapes, with round corners or grown.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class ReshapedExportTest : public ::testing::Test {
     options_.crs = ExportCrs::web_mercator;
   }
 
-  /// Polygons without the word, in metres of EPSG:3857, which are about 54 cells each.
+  /// Polygons as WKT without the keyword, in metres of EPSG:3857; one is about 54 cells.
   void set_source(const std::vector<std::string>& polygons) {
     std::vector<TestFeature> features;
     for (const std::string& polygon : polygons) {
@@ -36,7 +36,7 @@ class ReshapedExportTest : public ::testing::Test {
     return exported_rings(output_);
   }
 
-  /// The bytes of a file, whatever the time.
+  /// The bytes of an exported file, in a format that does not store the time.
   std::string write_text() {
     const std::string output = folder_.file("out.geojson");
     report_ = export_layer(source_, output, options_);

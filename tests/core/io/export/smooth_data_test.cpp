@@ -1,4 +1,4 @@
-// Real polygons written with round corners, held to what is drawn of the same layer.
+// Real polygons exported with round corners, compared with the drawing of the same layer.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -34,14 +34,14 @@ void PrintTo(const Trial& trial, std::ostream* out) {
 }
 
 constexpr double kRadius = 8;                      // pixels
-constexpr std::size_t kMostSegmentsOfCorner = 26;  // chords, and what is left of both edges
+constexpr std::size_t kMostSegmentsOfCorner = 26;  // chords, and the rest of both edges
 
 struct Drawn {
-  SegmentCounts segments;  // how many features each bounds; of horizontal ones, less than 0
+  SegmentCounts segments;  // how many features each bounds; negative for horizontal ones
   std::size_t corners = 0;
 };
 
-/// All outlines of a layer, as a tile of the zoom that shows all of it would have them.
+/// All outlines of a layer, as in a tile of the zoom that shows all of it.
 Drawn drawn_outlines(const Layer& layer, Level level, double pixel) {
   constexpr Box kEverywhere{kGridMin, kGridMin, kGridMax, kGridMax};
   const MeshView& mesh = layer.mesh();
@@ -112,8 +112,8 @@ class SmoothDataTest : public ::testing::TestWithParam<Trial> {
   double pixel_ = 1;
 };
 
-// By as many features: so neighbours have all of their borders in common, and there is neither a
-// gap nor an overlap that is not drawn.
+// The same number of features bounds each segment: neighbours share their whole borders, and there
+// are no gaps or overlaps that are not drawn.
 TEST_P(SmoothDataTest, EveryFeatureIsOutlinedAsItIsDrawn) {
   const RoundedCorners corners = export_layer(path_, output(), options_).corners;
   EXPECT_GT(corners.rounded, 0u);

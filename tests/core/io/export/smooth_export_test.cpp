@@ -1,4 +1,4 @@
-// Polygons written with round corners (see round_corners()).
+// Polygons exported with round corners (see round_corners()).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The id of a process that has been and is no more.
+/// The id of a process that no longer exists.
 std::string id_of_gone_process() {
   const pid_t process = fork();
   if (process == 0) _exit(0);

@@ -53,7 +53,7 @@ double x_at(const MeshView& mesh, const MeshEdge& edge, double y) {
   return upper.x + share * (static_cast<double>(lower.x) - upper.x);
 }
 
-// Area of one feature at full detail, in cells.
+// The area of one feature at full detail, in cells.
 double area_of(const Layer& layer, std::uint32_t row) {
   std::vector<TrapezoidRange> ranges;
   layer.select({.box = {kGridMin, kGridMin, kGridMax, kGridMax}}, ranges);
@@ -74,14 +74,14 @@ double area_of(const Layer& layer, std::uint32_t row) {
   return area;
 }
 
-// What a rectangle in degrees covers on the grid, in cells.
+// The area of a rectangle in degrees on the grid, in cells.
 double rectangle(double west, double south, double east, double north) {
   const GridPosition a = grid_from_lonlat({west, north});
   const GridPosition b = grid_from_lonlat({east, south});
   return (b.x - a.x) * (b.y - a.y);
 }
 
-// Snapping moves each side by half a cell at most.
+// Snapping moves each side by at most half a cell.
 void expect_area(const Layer& layer, std::uint32_t row, double expected) {
   EXPECT_NEAR(area_of(layer, row) / expected, 1, 8 / std::sqrt(expected)) << "row " << row;
 }
@@ -112,7 +112,7 @@ TEST_F(LoadLayerTest, CountsEveryFeatureOnce) {
   EXPECT_EQ(report.driver, "GeoJSON");
   EXPECT_EQ(report.features, 10u);
   EXPECT_EQ(report.loaded, 4u);  // square, two, collection, bow tie
-  // GDAL's GeoJSON driver makes no geometry of a polygon without rings.
+  // GDAL's GeoJSON driver creates no geometry for a polygon without rings.
   EXPECT_EQ(report.other_geometry, 5u);  // point, line, nothing, no rings, only points
   EXPECT_EQ(report.empty, 1u);           // smaller than a cell
   EXPECT_EQ(report.skipped, 0u);
@@ -212,7 +212,7 @@ TEST_P(FormatTest, BringsPolygonsAttributesAndOrderThrough) {
   EXPECT_EQ(loaded.report.rings, 5u);
   EXPECT_EQ(loaded.report.source_vertices, 24u);
   std::vector<std::string> names = texts(*loaded.layer, "text");
-  // A spatial index may come with an order of its own; the rows follow the file.
+  // A spatial index may use its own order; the rows follow the file.
   std::vector<std::int64_t> numbers;
   const FeatureTable& table = loaded.layer->features();
   for (std::uint32_t row = 0; row < 3; ++row) {
@@ -268,7 +268,7 @@ TEST_F(LoadLayerTest, ReadsTopoJson) {
 
 TEST_F(LoadLayerTest, ReadsAShapefileInAZipArchive) {
   const std::string path = "/vsizip/" + folder_.file("a.zip") + "/a.shp";
-  // GDAL writes one file after another into the archive.
+  // GDAL writes the files into the archive one after another.
   write_source(
       folder_.file("a.shp"), "ESRI Shapefile",
       {{.type = wkbPolygon, .features = {{"POLYGON((10 10,11 10,11 11,10 11,10 10))", 5}}}});
@@ -545,8 +545,8 @@ TEST_F(LoadLayerTest, GivesTheSameLayerWhateverTheNumberOfThreads) {
   EXPECT_TRUE(std::ranges::equal(a.trapezoids, b.trapezoids));
 }
 
-/// Squares in columns of ten, which have halves of their sides in common, columns apart; of each
-/// column, the fourth reaches over the fifth a little, and a small one lies on the eighth.
+/// Squares in separate columns of ten. In each column, neighbours share halves of their sides, the
+/// fourth square overlaps the fifth a little, and a small one overlaps the eighth.
 TestLayer columns_of_squares(int columns) {
   TestLayer layer;
   const auto square = [&](double x, double y, double height, double right_height, int number) {
@@ -606,7 +606,7 @@ TEST_F(LoadLayerTest, NeighboursAreBuiltTogetherWhateverTheThreads) {
   EXPECT_TRUE(std::ranges::equal(a.vertices, b.vertices));
   EXPECT_TRUE(std::ranges::equal(a.edges, b.edges));
   EXPECT_TRUE(std::ranges::equal(a.trapezoids, b.trapezoids));
-  // They are looked for unless that is said not to be wanted; what is not looked for is not found.
+  // Groups are detected by default; with CoverageMode::off there are none.
   EXPECT_EQ(load_layer(path).report.coverage.groups, 40u);
   options.generalization.coverage = CoverageMode::off;
   EXPECT_EQ(load_layer(path, options).report.coverage.groups, 0u);
@@ -617,7 +617,7 @@ TEST_F(LoadLayerTest, NeighboursAreBroughtTogetherUpToADistance) {
   write_source(path, "GPKG", {columns_of_squares(4)});
   LoadOptions options;
   options.generalization.coverage = CoverageMode::automatic;
-  options.generalization.close_gaps = 4;  // those that overlap do so by five and a half metres
+  options.generalization.close_gaps = 4;  // overlaps are five and a half metres wide
   EXPECT_EQ(load_layer(path, options).report.coverage.overlaps, 4u);
   options.generalization.close_gaps = 8;
   const CoverageCounts closed = load_layer(path, options).report.coverage;
@@ -628,8 +628,8 @@ TEST_F(LoadLayerTest, NeighboursAreBroughtTogetherUpToADistance) {
   EXPECT_EQ(closed.features, 40u);
 }
 
-//   _____             The corner goes to that of the square, but no border is shared: the triangle
-//  |     |\           is as it was drawn.
+//   _____             The corner moves to that of the square, but no border is shared: the triangle
+//  |     |\           stays as drawn.
 //  |_____| \.
 TEST_F(LoadLayerTest, WhatSharesNoBorderAfterGapsAreClosedIsAsItWasDrawn) {
   const std::string path = folder_.file("corner.fgb");
@@ -681,7 +681,7 @@ TEST_F(LoadLayerTest, ReportsProgressThatRisesToOne) {
   EXPECT_EQ(shares.back(), 1);
 }
 
-/// A comb whose graph takes a while.
+/// A comb whose graph takes a while to build.
 std::string comb_of_teeth(int teeth) {
   std::string ring = "0 -1";
   for (int i = 0; i <= teeth; ++i) {

@@ -136,7 +136,7 @@ TEST(SourceDivisionTest, IsKnownByWhatWasDividedAndHow) {
   EXPECT_NE(divide(write_squares(other, squares), 3)->fingerprint(), fingerprint);
 }
 
-// Of FlatGeobuf, small parts are read by the places of their features.
+// For FlatGeobuf, small parts are read by the file offsets of their features.
 TEST(SourceDivisionTest, PartsHaveEachFeatureOnceUnderItsId) {
   for (const std::string driver : {"GPKG", "FlatGeobuf"}) {
     for (const std::uint32_t count : {4u, 30u}) {

@@ -1,4 +1,4 @@
-// docs/prepared-format.md says what the code does.
+// docs/prepared-format.md agrees with the code.
 #include <gmock/gmock.h>
 
 #include <cstddef>

@@ -59,7 +59,7 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Bytes as a mapped file has them: at the border of a page, or of a cache line.
+/// Bytes aligned as in a mapped file: at the border of a page, or of a cache line.
 class AlignedBytes {
  public:
   explicit AlignedBytes(const std::string& bytes)
@@ -90,7 +90,7 @@ bool is_taken(std::span<const std::byte> bytes) {
   return true;
 }
 
-/// Where directory and sections of a file begin and end, in ascending order.
+/// Where the directory and the sections of a file begin and end, in ascending order.
 std::vector<std::size_t> borders_of(const std::string& bytes) {
   PreparedHeader header;
   std::memcpy(&header, bytes.data(), sizeof header);
@@ -109,7 +109,7 @@ std::vector<std::size_t> borders_of(const std::string& bytes) {
   return borders;
 }
 
-/// Changes the header of a file, and its checksum with it.
+/// Changes the header of a file, and updates its checksum.
 template <typename Change>
 void change_header(const std::string& path, const Change& change) {
   std::string bytes = read_file(path);
@@ -176,7 +176,7 @@ class PreparedLayerTest : public ::testing::Test {
     std::ranges::sort(found);
     return found;
   }
-  /// A source that a test may change; as GeoJSON.
+  /// A source that a test may change, as GeoJSON.
   std::string source(const std::string& name, const std::string& text) const {
     return folder_.write(name, R"({"type": "FeatureCollection", "features": [{"type": "Feature",
       "properties": {"name": ")" + text +
@@ -349,7 +349,7 @@ TEST_F(PreparedLayerTest, NamesTheDamagedSection) {
   prepare(kMixed, prepared_);
   std::string bytes = read_file(prepared_);
   const std::vector<std::size_t> borders = borders_of(bytes);
-  bytes[borders[6]] ^= 1;  // behind header, directory and description
+  bytes[borders[6]] ^= 1;  // after header, directory and description
   std::filesystem::remove(prepared_);
   std::ofstream(prepared_, std::ios::binary) << bytes;
   EXPECT_THAT(failure_of(prepared_), HasSubstr("is damaged: its section \"vertices\""));
@@ -567,7 +567,7 @@ TEST_F(PreparedLayerTest, CutOffWhileItIsMappedReadsAsZerosAndIsNotWhole) {
     std::filesystem::resize_file(prepared_, left);
     EXPECT_FALSE(opened.file->is_whole());
 
-    // Whatever is read, nothing is read from beyond.
+    // Whatever the content, no read goes beyond the bytes.
     const Layer& layer = *opened.layer;
     std::vector<TrapezoidRange> ranges;
     layer.select({.box = {kGridMin, kGridMin, kGridMax, kGridMax}}, ranges);
@@ -603,7 +603,7 @@ TEST_F(PreparedLayerTest, ThatTakesOverFromAnotherIsTheSameFile) {
     EXPECT_EQ(again.report.taken_over, loaded.report.loaded);
     save_prepared_layer(path("again.trapeze"), again, kRevision, stamp_source(kMixed), {}, earlier);
     EXPECT_EQ(read_file(prepared_), read_file(path("again.trapeze")));
-    // In place of the file that is looked at.
+    // Replaces the file that is mapped.
     save_prepared_layer(prepared_, again, kRevision, stamp_source(kMixed), {}, earlier);
     EXPECT_EQ(read_file(prepared_), read_file(path("again.trapeze")));
     EXPECT_TRUE(earlier.file->is_whole());
@@ -633,7 +633,7 @@ TEST_F(PreparedLayerTest, NothingIsTakenOverFromWhatWasBuiltOtherwise) {
   EXPECT_THAT(unfit([](LayerOptions&) {}), HasSubstr("builds layers differently"));
   change_header(prepared_, [](PreparedHeader& header) { ++header.version; });
   EXPECT_THAT(unfit([](LayerOptions&) {}), HasSubstr("has format"));
-  // A layer in memory that was built otherwise is passed over, too.
+  // An in-memory layer that was built with other options is not used either.
   LoadOptions otherwise;
   otherwise.earlier = load_layer(kMixed, options).layer;
   EXPECT_EQ(load_layer(kMixed, otherwise).report.taken_over, 0u);
@@ -668,7 +668,8 @@ TEST_F(PreparedLayerTest, CutOffWhileItIsTakenOverFromNothingIsReadBeyond) {
     std::filesystem::permissions(prepared_, std::filesystem::perms::owner_all);
     std::filesystem::resize_file(prepared_, left);
     EXPECT_FALSE(earlier.file->is_whole());
-    // Noted before and after.
+    // Fails for an earlier layer recorded after the file was cut, and for one recorded before
+    // (`noted`).
     const LoadedLayer after = load_with(kMixed, earlier);
     EXPECT_THAT(
         [&] {

@@ -201,7 +201,7 @@ TEST(OverviewTest, IsForZoomsAtWhichTilesMeetManyParts) {
     const std::int32_t y = i / 8 * side;
     boxes.push_back({x + 1, y + 1, x + side - 1, y + side - 1});
   }
-  EXPECT_EQ(last_zoom_of_overview(boxes), 6);  // 16 of them are in a tile, and 4 in one of zoom 7
+  EXPECT_EQ(last_zoom_of_overview(boxes), 6);  // 16 are in a tile, 4 in one of zoom 7
   EXPECT_EQ(last_zoom_of_overview({}), 0);
 }
 

@@ -47,7 +47,7 @@ TEST(ClipRingTest, GivesTheWindowForARingAroundIt) {
 }
 
 TEST(ClipRingTest, KeepsTheAreaOfARingCutIntoTwoParts) {
-  // A U that stands with its base outside: the arms stay, joined along the clip line.
+  // An upright U with its base outside: the arms remain, joined along the clip line.
   const PositionRing u = {{0, -1},      {1, -1},      {1, 1},    {0.75, 1},
                           {0.75, -0.5}, {0.25, -0.5}, {0.25, 1}, {0, 1}};
   EXPECT_DOUBLE_EQ(area(clipped(u, kUnit)), 0.5);

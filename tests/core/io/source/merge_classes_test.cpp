@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-/// A field of so many metres in a row of them with lanes of ten metres between.
+/// The field at that place in a row of fields of 100 metres, with lanes of ten metres between.
 TestFeature field(int place, const std::string& use) {
   const std::string left = std::to_string(110 * place);
   const std::string right = std::to_string(110 * place + 100);
@@ -52,7 +52,7 @@ class MergeClassesTest : public ::testing::Test {
     return classes;
   }
 
-  /// Where twelve metres are bridged.
+  /// With gaps of up to twelve metres bridged.
   std::size_t blocks(const std::string& attribute) const {
     ExportOptions options;
     options.generalization.merge = 4;
@@ -83,7 +83,7 @@ TEST_F(MergeClassesTest, AreEqualForEqualValues) {
 TEST_F(MergeClassesTest, OnlyFeaturesOfOneClassBecomeABlock) {
   EXPECT_EQ(blocks(""), 1u);
   EXPECT_EQ(blocks("text"), 4u);    // the first two, each of the next two, the last two
-  EXPECT_EQ(blocks("number"), 6u);  // no two beside each other
+  EXPECT_EQ(blocks("number"), 6u);  // no two beside each other have the same number
 }
 
 TEST_F(MergeClassesTest, AnAttributeThatIsNotThereIsAnErrorThatNamesThoseThatAre) {

@@ -29,7 +29,7 @@ const std::string kGeoJson = TRAPEZE_FIXTURES "/mixed.geojson";
 
 class OpenSourceTest : public ::testing::Test {
  protected:
-  // The words of the refusal; nothing may reach standard error.
+  // The message of the refusal; nothing may be written to standard error.
   std::string refusal(const std::string& path) {
     testing::internal::CaptureStderr();
     std::string words = "was opened";

@@ -52,7 +52,7 @@ std::vector<Point> ring(const FeatureRings& feature, std::size_t i) {
   return {feature.rings[i].begin(), feature.rings[i].end()};
 }
 
-// The sum itself fits into 64 bits; the steps on the way to it may wrap around.
+// The sum itself fits into 64 bits; intermediate results may wrap around.
 std::int64_t twice_area(std::span<const Point> ring) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -77,7 +77,7 @@ Point at(double lon, double lat) {
   return snapped(grid_from_lonlat({lon, lat}));
 }
 
-// The grid cell by PROJ alone, on the way that GDAL itself would take to EPSG:3857.
+// The grid cell computed by PROJ alone, along the path that GDAL itself would take to EPSG:3857.
 std::vector<Point> by_proj(const std::string& crs, std::vector<double> x, std::vector<double> y) {
   const OGRSpatialReference source = reference_of(crs);
   const OGRSpatialReference target = reference_of("EPSG:3857");
@@ -126,7 +126,7 @@ std::int64_t twice_area(const FeatureRings& feature) {
   return area;
 }
 
-// A rectangle on a plane whose edges have so many parts.
+// A rectangle on a plane whose edges are divided into `parts`.
 std::string rectangle(double west, double south, double east, double north, int parts) {
   const double x[] = {west, east, east, west, west};
   const double y[] = {south, south, north, north, south};
@@ -141,7 +141,7 @@ std::string rectangle(double west, double south, double east, double north, int 
   return wkt + std::to_string(west) + " " + std::to_string(south) + "))";
 }
 
-// Two roundings on the way may put a point that lies between two cells into either.
+// Two intermediate roundings may put a point between two cells into either of them.
 std::size_t count_different(const std::vector<Point>& a, const std::vector<Point>& b,
                             int by_more_than) {
   EXPECT_EQ(a.size(), b.size());
@@ -195,7 +195,7 @@ TEST(RingReaderTest, OtherDatumsAreShiftedAsByProj) {
   const RandomPoints points = random_points(1'000, 6, 14, 48, 54);
   const auto ours = by_reader("EPSG:4314", points);
   EXPECT_EQ(count_different(ours, by_proj("EPSG:4314", points.x, points.y), 1), 0u);
-  // The German datum is some hundred metres from WGS 84, so this says that PROJ was at work.
+  // The German datum differs from WGS 84 by some hundred metres, so this proves that PROJ was used.
   EXPECT_EQ(count_different(ours, by_proj("EPSG:4326", points.x, points.y), 1000), 1000u);
 }
 
@@ -287,8 +287,7 @@ TEST(RingReaderTest, TakesNumbersWithoutCrsForDegreesOnlyIfTheyCanBe) {
   EXPECT_TRUE(metres.rings.empty());
 }
 
-// GeoJSON is in degrees unless it says otherwise, and metres are often written into it all the
-// same.
+// GeoJSON is in degrees unless the file states otherwise, but is often written in metres.
 TEST(RingReaderTest, SaysWhenNothingIsLeftOfAFeatureAsItsCoordinatesAreNotDegrees) {
   const char* metres = "POLYGON((500000 5500000,501000 5500000,501000 5501000,500000 5500000))";
   for (const char* crs : {"OGC:CRS84", "EPSG:4326", "EPSG:4258"}) {
@@ -298,16 +297,16 @@ TEST(RingReaderTest, SaysWhenNothingIsLeftOfAFeatureAsItsCoordinatesAreNotDegree
     EXPECT_TRUE(feature.rings.empty());
   }
   EXPECT_THAT(read("POLYGON((600 0,601 0,601 1,600 0))").failure, HasSubstr("not degrees"));
-  // These may be: they lie where no map shows them, or are too small.
+  // These are accepted: they are outside of every map, or too small.
   EXPECT_EQ(read("POLYGON((0 86,1 90,2 87,0 86))").failure, "");
   EXPECT_EQ(read("POLYGON EMPTY").failure, "");
-  // Of this there is something to draw.
+  // A part of this one can be drawn.
   EXPECT_EQ(read("POLYGON((0 80,1 80,1 500,0 80))").failure, "");
   EXPECT_EQ(read("POLYGON((0 80,1 80,1 500,0 80))").rings.size(), 1u);
 }
 
 TEST(RingReaderTest, ReportsPointsThatCannotBeReprojected) {
-  // Far outside of what a transverse Mercator zone can be extended to.
+  // Far outside the range to which a transverse Mercator zone can be extended.
   const FeatureRings feature = read("POLYGON((500000 0,1e12 0,1e12 1e12,500000 0))", "EPSG:25832");
   EXPECT_THAT(feature.failure, HasSubstr("cannot be reprojected"));
   EXPECT_TRUE(feature.rings.empty());
@@ -349,7 +348,7 @@ TEST(RingReaderTest, LaysCutsThatAreRoundedOnTheAntimeridian) {
   EXPECT_TRUE(same("POLYGON((170 -80,179.99999 -80,179.999985 -70,170 -70,170 -80))", exact));
   EXPECT_TRUE(same("POLYGON((170 -80,180.00001 -80,180 -70,170 -70,170 -80))", exact));
   EXPECT_FALSE(same("POLYGON((170 -80,179.9999 -80,180 -70,170 -70,170 -80))", exact));
-  // A house beside the antimeridian stays where it is.
+  // A building beside the antimeridian stays where it is.
   EXPECT_FALSE(same("POLYGON((179.9 0,179.99999 0,179.99999 0.005,179.9 0.005,179.9 0))",
                     "POLYGON((179.9 0,180 0,180 0.005,179.9 0.005,179.9 0))"));
 }
@@ -366,7 +365,7 @@ TEST(RingReaderTest, KeepsAProjectedRingAcrossTheAntimeridianTogether) {
   EXPECT_NEAR(area / (side * side), 1, 0.01);
 }
 
-// As that of the sea in a map of the world that was made of a raster.
+// For example that of the sea in a world map that was vectorized from a raster.
 TEST(RingReaderTest, LeadsLongEdgesAsFarAroundTheWorldAsTheyGoOnThePlane) {
   struct Case {
     const char* crs;
@@ -391,8 +390,8 @@ TEST(RingReaderTest, LeadsLongEdgesAsFarAroundTheWorldAsTheyGoOnThePlane) {
   }
 }
 
-// Where parallels are shorter towards the poles, sides that are straight on the plane are not so in
-// the world: corners are what is compared.
+// Where parallels are shorter towards the poles, sides that are straight on the plane are not
+// straight in the world, so only corners are compared.
 TEST(RingReaderTest, FollowsLongEdgesOnPlanesWithCurvedMeridians) {
   for (const char* crs : {"ESRI:54009", "ESRI:54030", "EPSG:8857"}) {
     SCOPED_TRACE(crs);
@@ -414,7 +413,7 @@ TEST(RingReaderTest, KeepsAnOtherDatumAtTheAntimeridianTogether) {
 }
 
 TEST(RingReaderTest, LeadsARingAroundAPoleOverThePole) {
-  // A square around the south pole in polar stereographic coordinates, and a hole clear of it.
+  // A square around the south pole in polar stereographic coordinates.
   const FeatureRings feature =
       read("POLYGON((-3e6 -3e6,3e6 -3e6,3e6 3e6,-3e6 3e6,-3e6 -3e6))", "EPSG:3031");
   ASSERT_FALSE(feature.rings.empty());

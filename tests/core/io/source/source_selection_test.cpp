@@ -111,7 +111,7 @@ TEST_F(SourceSelectionTest, TakesTheFeaturesForWhichAConditionHolds) {
   const LoadedLayer loaded = load_layer(town_, {.selection = stone});
   EXPECT_THAT(numbers(*loaded.layer), ElementsAre(3));
   EXPECT_EQ(loaded.report.features, 1u);
-  // Of all layers, if none is named.
+  // Applies to all layers if none is named.
   EXPECT_THAT(numbers(*load_layer(town_, {.selection = {.where = "number >= 3"}}).layer),
               ElementsAre(3, 4));
 }
@@ -156,7 +156,7 @@ TEST_F(SourceSelectionTest, KeepsTheNamedAttributesInTheOrderOfTheSource) {
   const LoadedLayer bare = load_layer(town_, {.selection = {.attributes = {{}}}});
   EXPECT_TRUE(bare.layer->features().fields().empty());
   EXPECT_EQ(bare.layer->features().size(), 4u);
-  // A condition may look at what is not kept.
+  // A condition may use an attribute that is not kept.
   const SourceSelection both = {.where = "number = 2", .attributes = {{"text"}}};
   EXPECT_EQ(load_layer(town_, {.selection = both}).report.loaded, 1u);
 }
@@ -171,7 +171,7 @@ TEST_F(SourceSelectionTest, SaysWhatIsNotThere) {
 }
 
 TEST_F(SourceSelectionTest, SaysInOneLineWhichConditionALayerDoesNotUnderstand) {
-  for (const std::string& path : {town_, kMixed}) {  // a database, and what GDAL asks itself
+  for (const std::string& path : {town_, kMixed}) {  // a database, and GDAL filtering
     for (const std::string where : {"colour = 'red'", "number = "}) {
       EXPECT_THAT(failure_of(path, {.where = where}),
                   AllOf(StartsWith(path), HasSubstr("cannot be asked where " + where + ": "),

@@ -65,7 +65,8 @@ class SourceShortageTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Where the features of a FlatGeobuf begin, and the end of the first of them, by its own sizes.
+/// The offsets where the features of a FlatGeobuf begin, and the end of the first feature, from its
+/// own sizes.
 std::vector<std::uintmax_t> first_features(const std::string& path, std::size_t features) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), {});
@@ -95,7 +96,7 @@ TEST_F(SourceShortageTest, AFlatGeobufThatEndsBetweenTwoFeaturesIsNotASmallerLay
   const auto ends = first_features(path, 7);
   cut(path, ends[7]);
   EXPECT_THAT(failure_of(path), AllOf(StartsWith(path), HasSubstr("7 of the 60 features")));
-  // A condition lets fewer through, and still what is there is counted.
+  // A condition selects fewer features, but all existing ones are counted.
   EXPECT_THAT(failure_of(path, "number > 3"), HasSubstr("7 of the 60 features"));
 }
 
@@ -159,7 +160,7 @@ TEST_F(SourceShortageTest, ADatabaseThatLacksAPartOfItsLastPageIsRefused) {
   for (const auto& [name, driver] : {std::pair("a.gpkg", "GPKG"), {"a.sqlite", "SQLite"}}) {
     const std::string path = write(name, driver);
     cut(path, size_of(path) - 200);
-    // A GeoPackage has its schema there, which reads as nonsense at once.
+    // The end of a GeoPackage holds its schema, which is immediately rejected as malformed.
     EXPECT_THAT(failure_of(path), AllOf(StartsWith(path), AnyOf(HasSubstr("lacks 200 of its 4096"),
                                                                 HasSubstr("malformed"))));
     cut(path, size_of(path) / 4096 * 4096);

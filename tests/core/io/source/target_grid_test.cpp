@@ -1,4 +1,4 @@
-// Polygons on grids of other reference systems, held to PROJ along their edges.
+// Polygons on grids of other reference systems, compared with PROJ along their edges.
 #include "core/io/source/target_grid.h"
 
 #include <gmock/gmock.h>
@@ -112,7 +112,7 @@ struct Case {
 
 class EdgesOnGridTest : public ::testing::TestWithParam<Case> {};
 
-// Straight lines of the source, projected point by point, are the edges of the ring.
+// Straight lines of the source, projected point by point, coincide with the edges of the ring.
 TEST_P(EdgesOnGridTest, StayWhereTheyAre) {
   const Case& one = GetParam();
   const unsigned seed = std::random_device{}();
@@ -124,7 +124,7 @@ TEST_P(EdgesOnGridTest, StayWhereTheyAre) {
   const std::unique_ptr<OGRCoordinateTransformation> straight(
       OGRCreateCoordinateTransformation(&source, &target));
   ASSERT_NE(straight, nullptr);
-  // What rounding to cells takes, and what edges may be off.
+  // The rounding to cells, and the permitted error of edges.
   const double most = std::max(0.25, GridRings::kMostOffMetres / grid->metres_per_cell()) +
                       (std::string(one.crs) == "EPSG:4326" ? 0 : 1) * GridRings::kMostOffMetres /
                           grid->metres_per_cell() +
@@ -195,7 +195,7 @@ TEST(GridRingsTest, NeighboursCutTheirCommonEdgeAlike) {
   std::vector<std::pair<int, int>> common;
   std::ranges::set_intersection(a, b, std::back_inserter(common));
   EXPECT_GT(common.size(), 20u);
-  // No vertex of one lies on the common edge without being one of the other.
+  // Every vertex of one on the shared edge is also a vertex of the other.
   const auto [west_end, east_end] = std::minmax(common.front(), common.back());
   EXPECT_NE(west_end, east_end);
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMetresOfDegree = 100'000;
 
-/// A plane that is cut where x is 0: to the west of it is 170 west, to the east of it 0.
+/// A plane that is cut at x = 0: just west of it lies 170 degrees west, just east of it 0.
 SourcePlane cut_plane() {
   const auto to_lonlat = [](std::vector<double>& x, std::vector<double>& y) {
     for (double& each : x) each = each < 0 ? -170 + each / kMetresOfDegree : each / kMetresOfDegree;
@@ -20,8 +20,8 @@ SourcePlane cut_plane() {
   return {to_lonlat, 1};
 }
 
-// However many vertices a ring has, looking for the place where its plane is cut goes no deeper
-// than to what is a centimetre apart.
+// However many vertices a ring has, the search for the cut of its plane does not recurse below a
+// centimetre.
 TEST(UnwrapLongitudes, AnEdgeOverACutOfThePlaneGoesTheShorterWay) {
   constexpr std::size_t kVertices = 400'000;
   const SourcePlane plane = cut_plane();

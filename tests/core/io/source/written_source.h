@@ -1,4 +1,4 @@
-// Vector files in the formats of the world, written by GDAL for a test to read.
+// Vector files in common formats, written by GDAL for a test to read.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ struct TestLayer {
 void write_source(const std::string& path, const std::string& driver,
                   const std::vector<TestLayer>& layers);
 
-/// A dataset that a test fills by itself; throws if GDAL cannot create it.
+/// A dataset that a test fills itself; throws if GDAL cannot create it.
 GDALDatasetUniquePtr create_source(const std::string& path, const std::string& driver);
 
 OGRSpatialReference test_reference(const std::string& crs);
