@@ -88,7 +88,8 @@ TEST(KnownTilesTest, MostTilesAreNotLookedAt) {
   const auto dataset = testing::sample_dataset();
   const auto plan = SeedPlan::make(seed_request(*dataset, {0, 9}, "stroke=black"), dataset);
   const SeededTiles seeded(*plan);
-  // Only tiles along boundaries are drawn: those of squares with sides of some thousand tiles.
+  // Only tiles along boundaries are drawn: the sides of the squares pass through some thousand
+  // tiles.
   EXPECT_LT(seeded.figures().drawn + seeded.figures().alone, plan->count() / 40);
   EXPECT_GT(seeded.figures().drawn, 1000u);
   EXPECT_LT(seeded.figures().alone, seeded.figures().drawn / 10);

@@ -17,7 +17,7 @@ class EditedLand {
   explicit EditedLand(unsigned seed);
 
   /// Moves a corner, deletes or adds a feature, changes an attribute, reorders features that do not
-  /// touch, or only writes the file again under another name. Returns the kind of edit in a word.
+  /// overlap, or only writes the file again under another name. Returns the kind of edit in a word.
   std::string edit();
 
   /// Loads the current state from a file: one layer, "land", with the attributes kind (field, wood
