@@ -46,7 +46,7 @@ ask() {
   curl --silent --no-progress-meter --globoff --parallel --parallel-immediate --parallel-max "$parallel" \
     --connect-timeout 5 --max-time 60 \
     --write-out '%{http_code}\t%{time_total}\t%{size_download}\t%{content_type}\t%header{etag}\t%header{retry-after}\t%{url}\n' \
-    --config "$work/$1.curl" >"$work/$1" || true # the codes tell: 000 is no answer
+    --config "$work/$1.curl" >"$work/$1" || true # failures show in the codes: 000 is no answer
   end=$(date +%s.%N)
   echo "$begin $end" >"$work/$1.time"
 }
