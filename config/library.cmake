@@ -1,4 +1,5 @@
-# The libraries core and core/io for other programs, which find them by find_package(Trapeze).
+# Installs the libraries core and core/io for other programs, which find them with
+# find_package(Trapeze).
 include(CMakePackageConfigHelpers)
 set(headers ${CMAKE_INSTALL_INCLUDEDIR}/trapeze)
 set(cmake_files ${CMAKE_INSTALL_LIBDIR}/cmake/Trapeze)
@@ -13,7 +14,7 @@ foreach(export TrapezeCore TrapezeIo)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/core DESTINATION ${headers} COMPONENT development
   FILES_MATCHING PATTERN "*.h" PATTERN io EXCLUDE)
-# Of core/io, what shows nothing of GDAL.
+# The headers of core/io that do not expose GDAL.
 foreach(header export/export_crs export/export_layer load/load_layer load/load_report prepared/open_layer
     source/source_selection)
   get_filename_component(folder core/io/${header} DIRECTORY)
@@ -22,7 +23,7 @@ endforeach()
 
 configure_package_config_file(TrapezeConfig.cmake.in TrapezeConfig.cmake INSTALL_DESTINATION ${cmake_files}
   NO_SET_AND_CHECK_MACRO)
-# Before 1.0 a minor version may change the interface.
+# Before 1.0, a minor version may change the interface.
 write_basic_package_version_file(TrapezeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/TrapezeConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/TrapezeConfigVersion.cmake
   DESTINATION ${cmake_files} COMPONENT development)

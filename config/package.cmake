@@ -1,8 +1,8 @@
-# Packages of Debian: trapeze, the server, and libtrapeze-dev, the libraries. cpack -G DEB
+# Debian packages: trapeze, the server, and libtrapeze-dev, the libraries. Built with cpack -G DEB.
 set(TRAPEZE_PACKAGE_CONTACT "Trapeze developers <trapeze@packages.invalid>" CACHE STRING
   "Who answers for the packages of Debian: Name <address>")
 
-# The licence of the viewer's map library comes with it.
+# Includes the licence of the viewer's map library.
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE licence)
 set(copyright "Trapeze\n\n${licence}")
 if(TRAPEZE_HAS_VIEWER)
@@ -41,8 +41,8 @@ set(CPACK_COMPONENTS_ALL program development)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGE_NAME trapeze)
 set(CPACK_PACKAGE_CONTACT ${TRAPEZE_PACKAGE_CONTACT})
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each has its own
-# Files go where the unit and the configuration say they are.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own
+# Files are installed at the paths in the unit and the configuration.
 set(CPACK_SET_DESTDIR ON)
 set(CPACK_INSTALL_PREFIX ${CMAKE_INSTALL_PREFIX})
 set(CPACK_STRIP_FILES ON)
@@ -54,10 +54,10 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME trapeze)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION web)
-# Beside the libraries: the unit reloads by kill.
+# In addition to the libraries: the unit reloads with kill.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS procps)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, fonts-dejavu-core")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS libosmesa6)  # loaded when it is asked for
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS libosmesa6)  # loaded only when it is requested
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "tile server for polygon maps
 Reads polygons in any format of GDAL and serves them over HTTP as PNG and WebP
 tiles, in the style that a request asks for, simplified to what a pixel shows.

@@ -4,7 +4,7 @@
 
 progress_reporter=
 
-# Reached when the command in the foreground, which got the signal as well, has ended.
+# Called once the foreground command, which received the signal as well, has ended.
 end_interrupted() {
   trap '' INT
   [[ -z $progress_reporter ]] || kill "$progress_reporter" 2>/dev/null || true
@@ -13,19 +13,21 @@ end_interrupted() {
 }
 trap end_interrupted INT
 
-# Prints the help and ends, if the first argument asks for it.
+# Prints the help and exits if the first argument requests it.
 help_if_asked() {
   [[ ${1-} == --help || ${1-} == -h ]] || return 0
   sed -n '2,/^[^#]/{/^#/!d;s/^# \{0,1\}//;p}' "$0"
   exit 0
 }
 
-# The last line that counts steps, as ninja's "[3/120] ...": what a compiler says may come after it. Else the last.
+# The last line that counts steps, such as ninja's "[3/120] ...", which compiler output may follow; else the last
+# line.
 last_step() {
   grep -aE '^\[[0-9]+/[0-9]+\]' "$1" 2>/dev/null | tail -n 1 | grep . || tail -n 1 "$1" 2>/dev/null || true
 }
 
-# Ends with the process of that number. The builtin read waits, so that nothing outlives this.
+# Ends together with the process $3. The builtin read waits, so that no child process is left
+# behind.
 report_progress() {
   local name=$1 log=$2 of=$3 seconds=0 waiting last
   exec {waiting}<> <(:)
@@ -36,8 +38,8 @@ report_progress() {
   done
 }
 
-# with_progress NAME LOG COMMAND...: what the command says goes to the log; its last step is shown every ten
-# seconds. Returns the command's status.
+# with_progress NAME LOG COMMAND...: writes the command's output to the log and shows its last step every
+# ten seconds. Returns the command's status.
 with_progress() {
   local name=$1 log=$2 status=0
   shift 2

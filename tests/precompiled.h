@@ -1,5 +1,6 @@
-// What most tests include, compiled once for each program: half of the time to compile a test goes
-// into it. Tests name what they use all the same; -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON finds out.
+// Headers that most tests include, compiled once for each program: they take half of the time to
+// compile a test. Tests still include what they use; -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON checks
+// this.
 #pragma once
 
 #include <gmock/gmock.h>

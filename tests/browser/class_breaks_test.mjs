@@ -1,4 +1,4 @@
-// Where numbers are parted into classes, and whether the colours of classes can be told apart.
+// Class breaks for numbers, and whether the colours of classes can be told apart.
 import assert from "node:assert/strict";
 import test from "node:test";
 
@@ -14,7 +14,7 @@ function classes_by(breaks, numbers) {
 }
 
 test("quantiles have as many numbers in each class", () => {
-  const numbers = [...Array.from({ length: 99 }, (_, i) => i * i), 1e9]; // one that lies far away
+  const numbers = [...Array.from({ length: 99 }, (_, i) => i * i), 1e9]; // one outlier
   const parts = classes_by(quantile_breaks(numbers, 5), numbers);
   assert.deepEqual(parts.map(({ length }) => length), [20, 20, 20, 20, 20]);
 });
@@ -30,7 +30,7 @@ test("natural breaks lie in the gaps", () => {
     [[1, 2, 2, 3], [10, 11, 12], [50, 52, 55]]);
 });
 
-/** The least sum of squared distances from the means of classes, by trying them all. */
+/** The least sum of squared distances from the means of classes, by brute force. */
 function least_sum(numbers, classes) {
   if (classes === 1) {
     const mean = numbers.reduce((a, b) => a + b, 0) / numbers.length;
@@ -74,7 +74,7 @@ test("breaks ascend, have few digits, and none has nothing below it, whatever th
   }
 });
 
-// ---- colours, as eyes see them that lack one kind of cones: Machado, Oliveira and Fernandes, 2009
+// ---- colours as seen without one kind of cones: Machado, Oliveira and Fernandes, 2009
 
 const EYES = {
   all: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -85,7 +85,7 @@ const EYES = {
   "no blue": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602],
     [0.004733, 0.691367, 0.3039]],
 };
-const TOLD_APART = 8; // distance in CIELAB; 2.3 is said to be just seen
+const TOLD_APART = 8; // distance in CIELAB; 2.3 is said to be just noticeable
 
 const dot = (matrix, colour) =>
   matrix.map((row) => row.reduce((sum, part, i) => sum + part * colour[i], 0));

@@ -1,4 +1,4 @@
-// The list of classes as the server reads it, and addresses of tiles of several layers.
+// The list of classes as the server parses it, and the addresses of tiles with several layers.
 import assert from "node:assert/strict";
 import test from "node:test";
 

@@ -1,4 +1,5 @@
-// Other people's map clients show our tiles: pages of their own, from another origin than the tiles.
+// Third-party map clients show our tiles, in pages of their own and from another origin than the
+// tiles.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { chmodSync, mkdtempSync, rmSync } from "node:fs";
@@ -49,7 +50,7 @@ const { browser, server } = await start_browser_and_server(
   on_the_swiss_grid("land", "#d8c99b") + on_the_swiss_grid("lake", "#4f8fba"),
 );
 let pages;
-let nginx; // nothing where it is not installed
+let nginx; // undefined where nginx is not installed
 
 before(async () => {
   execFileSync(process.env.TRAPEZE_BINARY, ["seed", "--config", server.config_file,
@@ -87,7 +88,7 @@ async function answer(request, response) {
   }
 }
 
-/** Where a place lies in the window, in pixels. */
+/** The position of a place in the window, in pixels. */
 function on_screen({ lon, lat }) {
   const mercator = (degrees) => Math.asinh(Math.tan((degrees * Math.PI) / 180)) / (2 * Math.PI);
   const world = 256 * 2 ** ZOOM;
@@ -97,7 +98,7 @@ function on_screen({ lon, lat }) {
   };
 }
 
-/** The pixels of PNG files, each laid in its place on white, as the bytes of RGBA. */
+/** The pixels of PNG files, each drawn at its position on white, as RGBA bytes. */
 async function pixels_of_pictures(page, size, pictures) {
   const data_url = await page.evaluate(async ([size, pictures]) => {
     const context = new OffscreenCanvas(size, size).getContext("2d");
@@ -107,7 +108,7 @@ async function pixels_of_pictures(page, size, pictures) {
       const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
       context.drawImage(await createImageBitmap(new Blob([bytes])), x, y);
     }
-    // As text, since millions of numbers take the remote control minutes.
+    // As text: sending millions of numbers over the remote control takes minutes.
     const reader = new FileReader();
     const is_read = new Promise((resolve) => (reader.onload = resolve));
     reader.readAsDataURL(new Blob([context.getImageData(0, 0, size, size).data]));
@@ -117,7 +118,7 @@ async function pixels_of_pictures(page, size, pictures) {
   return new Uint8Array(Buffer.from(data_url.slice(data_url.indexOf(",") + 1), "base64"));
 }
 
-/** What stands on the screen, as the bytes of RGBA. */
+/** The pixels on the screen, as RGBA bytes. */
 async function pixels_of_screen(page, scale = 1) {
   const picture = await page.screenshot();
   assert.equal(picture.readUInt32BE(16), SIZE * scale, "width of the picture");
@@ -134,21 +135,21 @@ function assert_colour_at(pixels, place, colour, what) {
   assert.ok(is_colour(pixels, i, colour), `${what} at ${x}, ${y} is ${pixels.slice(i, i + 3)}`);
 }
 
-/** The share of the window that has a colour. */
+/** The share of the window that has this colour. */
 function share_of(pixels, colour) {
   let count = 0;
   for (let i = 0; i < pixels.length; i += 4) if (is_colour(pixels, i, colour)) count++;
   return count / (SIZE * SIZE);
 }
 
-/** The map of tests/browser/{land,lake}.geojson, with the lake in this colour. */
+/** Expects the map of tests/browser/{land,lake}.geojson, with the lake in this colour. */
 function assert_map(pixels, lake) {
   assert_colour_at(pixels, { lon: 6.5, lat: 45.5 }, lake, "the lake");
   assert_colour_at(pixels, { lon: 15, lat: 46 }, LAND, "the mainland");
   assert_colour_at(pixels, { lon: 10, lat: 51 }, PAPER, "the bay");
   assert_colour_at(pixels, { lon: 0.4, lat: 46 }, LAND, "the island");
   assert_colour_at(pixels, { lon: 3, lat: 41 }, PAPER, "the sea");
-  // All of it, and not doubled, shifted or scaled: its area on the screen.
+  // The lake's area on the screen shows that it is complete and not doubled, shifted or scaled.
   const area = (west, south, east, north) => {
     const a = on_screen({ lon: west, lat: south });
     const b = on_screen({ lon: east, lat: north });
@@ -158,7 +159,7 @@ function assert_map(pixels, lake) {
   assert.ok(Math.abs(share_of(pixels, lake) - lake_area) < 0.05 * lake_area, "area of the lake");
 }
 
-// Addresses of the tile that holds the middle of the map.
+// Addresses of the tile in the middle of the map.
 const XYZ = [/\/tiles\/land,lake\/5\/16\/11\.png\?lake\.fill=ff0000/];
 const WMTS = [
   /\/wmts\?(?=.*layer=land&)(?=.*tilematrix=5&)(?=.*tilecol=16(&|$))(?=.*tilerow=11(&|$))/i,
@@ -245,7 +246,7 @@ for (const tiled of ["", "1"]) {
     for (let i = 0; i < expected.length; i += 4) {
       if (!is_colour(shown, i, expected.slice(i, i + 3))) differing++;
     }
-    // Pieces are cut at their borders, where colours of pixels may become one in each by itself.
+    // With pieces, the colours along their borders may be reduced differently in each piece.
     assert.ok(differing <= 0.0005 * SIZE * SIZE, `${differing} pixels differ`);
     assert.ok(seen.answers.some(({ url }) => /crs=EPSG%3A2056/i.test(url)));
     assert.deepEqual(seen.answers.filter(({ status }) => status >= 400), []);
@@ -254,7 +255,7 @@ for (const tiled of ["", "1"]) {
   });
 }
 
-// Where four tiles of zoom 5 meet, so that pixels of tiles are pixels of the screen.
+// The corner of four tiles of zoom 5, so that pixels of the tiles match pixels of the screen.
 const CORNER = { column: 17, row: 11 };
 const CORNER_PLACE = [
   (CORNER.column / 2 ** ZOOM) * 360 - 180,

@@ -1,4 +1,4 @@
-// Looks that go with any layers: each layer in a colour of its own.
+// Looks that suit any layers: each layer gets a colour of its own.
 import assert from "node:assert/strict";
 import test from "node:test";
 
@@ -6,7 +6,7 @@ import { light_colour_at } from "../../web/colours.js";
 import { all_looks } from "../../web/looks.js";
 
 const LAYERS = 40;
-const NEAR = 6; // of 255, in all channels
+const NEAR = 6; // of 255, the difference in every channel
 
 const channels = (colour) => [0, 2, 4].map((i) => Number.parseInt(colour.slice(i, i + 2), 16));
 

@@ -1,4 +1,4 @@
-// nginx that serves archives as docs/seeding.md says, from an origin of its own.
+// Runs nginx to serve archives as docs/seeding.md describes, from an origin of its own.
 import { execFileSync, spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -10,14 +10,14 @@ import { HERE, free_port } from "./served_viewer.mjs";
 const GUIDE = join(HERE, "..", "..", "docs", "seeding.md");
 const PROGRAM = process.env.NGINX ?? "/usr/sbin/nginx";
 
-/** The blocks of the guide, with this folder in place of the one that it names. */
+/** The blocks of the guide, with this folder in place of the one named there. */
 function locations(folder) {
   const blocks = readFileSync(GUIDE, "utf8").match(/^ {4}location [^]*?^ {4}}$/gm);
   if (!blocks) throw new Error("the guide has no location for nginx");
   return blocks.join("\n").replaceAll("/srv/maps", folder);
 }
 
-/** Serves the folder; nothing if nginx is not installed. */
+/** Serves the folder; returns undefined if nginx is not installed. */
 export async function start_nginx(folder) {
   try {
     execFileSync(PROGRAM, ["-v"], { stdio: "ignore" });

@@ -1,4 +1,4 @@
-// The address of the viewer: what is written is read back, and nothing mistyped is an error.
+// The address of the viewer: it can be written and read back, and a mistyped one causes no error.
 import assert from "node:assert/strict";
 import test from "node:test";
 

@@ -1,4 +1,4 @@
-// The snippets that the README has for map clients, word by word, in pages of their own: each shows the map.
+// The README's snippets for map clients, pasted word for word into a page each, show the map.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
@@ -19,7 +19,7 @@ const FOLDERS = {
 };
 const TYPES = { ".css": "text/css", ".js": "text/javascript", ".mjs": "text/javascript" };
 
-/** What a page has before the snippet is pasted into it: a map that shows the mainland and nothing else. */
+/** A page before the snippet is pasted into it: a map with only the mainland. */
 const PAGES = {
   Leaflet: `
     <link rel="stylesheet" href="/leaflet/leaflet.css">

@@ -13,7 +13,7 @@ export const HERE = dirname(fileURLToPath(import.meta.url));
 export const WEB = join(HERE, "..", "..", "web");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium-headless-shell";
 const SKIPPED = 77;
-const START_TIMEOUT_MS = 60_000; // sanitizers on a busy machine
+const START_TIMEOUT_MS = 60_000; // enough for sanitizers on a busy machine
 
 function skip(reason) {
   console.log(`skipped: ${reason}`);
@@ -92,7 +92,7 @@ async function start_server(more_config) {
   if (!binary) throw new Error("TRAPEZE_BINARY must name the program to test");
   const folder = mkdtempSync(join(tmpdir(), "trapeze-viewer-"));
   const web_root = join(folder, "web");
-  // Not web/dist: that is as old as the last run of script/bootstrap.
+  // Not web/dist, which is only as recent as the last run of script/bootstrap.
   execFileSync(process.execPath, [join(WEB, "assemble.mjs"), web_root]);
   const config_file = join(folder, "trapeze.toml");
   writeFileSync(config_file, config(web_root, more_config));
@@ -116,7 +116,7 @@ async function start_server(more_config) {
     server.process.kill("SIGTERM");
     return exited;
   };
-  /** After stop(): the same once more, on the same port. */
+  /** After stop(): starts the server again on the same port. */
   server.start = async () => {
     launch();
     await wait_until_ready(server.base, server);
@@ -136,7 +136,7 @@ async function start_server(more_config) {
   return server;
 }
 
-/** `options` are further ones of Chromium's command line. */
+/** `options` are additional command-line options of Chromium. */
 async function start_browser(options) {
   const { chromium } = load_playwright();
   if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed; run script/bootstrap`);
@@ -149,7 +149,7 @@ async function start_browser(options) {
 }
 
 /**
- * Both, closed when the tests of the file have ended; the server must then end in order.
+ * Starts both and closes them after the tests of the file; the server must then exit cleanly.
  * `more_config` is added to the server's configuration.
  */
 export async function start_browser_and_server(options = [], more_config = "") {
@@ -177,7 +177,7 @@ export const PHONE = {
   hasTouch: true,
 };
 
-/** A page in a context of its own that keeps what it asked for and what went wrong. */
+/** A page in its own context that records its requests and errors. */
 export async function new_page(browser, options = DESKTOP) {
   const context = await browser.newContext(options);
   const page = await context.newPage();
@@ -195,7 +195,7 @@ export async function new_page(browser, options = DESKTOP) {
   return { page, seen };
 }
 
-/** Until every tile that is wanted has been drawn and no old one is left. */
+/** Waits until every requested tile has been drawn and no old one is left. */
 export async function tiles_drawn(page) {
   await page.waitForFunction(() => {
     const tiles = [...document.querySelectorAll("img.leaflet-tile")];
@@ -205,22 +205,22 @@ export async function tiles_drawn(page) {
   }, null, { timeout: 30_000, polling: 50 });
 }
 
-/** Until nothing on the page moves, unfolds or fades. */
+/** Waits until nothing on the page moves, unfolds or fades. */
 export async function at_rest(page) {
   await page.waitForFunction(() => !document.querySelector(".leaflet-pan-anim, .leaflet-zoom-anim") &&
     document.getAnimations().every(({ playState }) => playState !== "running"), null, { polling: 50 });
 }
 
 /**
- * The addresses of the tiles on the page, sorted. In one step: a list of elements that is sent over
- * first ($$eval) may hold tiles that have been taken away since.
+ * The addresses of the tiles on the page, sorted. Read in one step: a list of elements that is
+ * transferred first ($$eval) may contain tiles that have been removed since.
  */
 export function shown_tiles(page) {
   return page.evaluate(() =>
     [...document.querySelectorAll("img.leaflet-tile")].map((tile) => tile.src).sort());
 }
 
-/** Those that show a layer, alone or together with others. */
+/** The tiles that show a layer, alone or together with others. */
 export function of_layer(tiles, name) {
   return tiles.filter((url) => layers_of(url).includes(name));
 }
@@ -229,7 +229,7 @@ export function layers_of(tile_url) {
   return /\/tiles\/([^/]+)\//.exec(tile_url)[1].split(",");
 }
 
-/** What a tile's address says of one of its layers: its own parameters, and those of all. */
+/** The parameters in a tile's address that apply to one of its layers: its own and those for all layers. */
 export function query_of(tile_url, name) {
   const layers = layers_of(tile_url);
   const parameters = [...new URL(tile_url).searchParams];
@@ -242,7 +242,7 @@ export function hash_of(page) {
   return page.evaluate(() => location.hash);
 }
 
-/** How many pixels of the tiles that show a layer have this colour and are not transparent. */
+/** The number of opaque pixels with this colour in the tiles that show a layer. */
 export function pixels_of_colour(page, name, [r, g, b]) {
   return page.evaluate(([name, r, g, b]) => {
     let count = 0;
@@ -260,7 +260,7 @@ export function pixels_of_colour(page, name, [r, g, b]) {
   }, [name, r, g, b]);
 }
 
-/** What every undisturbed visit must satisfy. */
+/** Conditions that every undisturbed visit must satisfy. */
 export function assert_nothing_went_wrong(server, seen) {
   assert.deepEqual(seen.errors, []);
   assert.deepEqual(seen.requests.filter((url) => !url.startsWith(server.base)), [],

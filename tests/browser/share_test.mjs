@@ -1,4 +1,4 @@
-// What "Use this map" gives works elsewhere: pages pasted into a file, commands, addresses.
+// The output of "Use this map" works elsewhere: pages pasted into a file, commands, addresses.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -32,7 +32,7 @@ let pasted = "";
 before(() => new Promise((resolve) => pages.listen(0, "127.0.0.1", resolve)));
 after(() => pages.close());
 
-/** The viewer with the panel open. */
+/** Opens the viewer with the panel unfolded. */
 async function open(hash, options = undefined) {
   const { page, seen } = await new_page(browser, options);
   await page.goto(server.base + hash);
@@ -55,7 +55,7 @@ async function links(page) {
     all.map((link) => [link.textContent, link.href])));
 }
 
-/** Scripts of a client come from its package and not from the network. */
+/** Loads the scripts of a client from its package, not from the network. */
 async function route_packages(page) {
   await page.route("https://unpkg.com/**", async (route) => {
     const [, name, version, path] =
@@ -71,7 +71,7 @@ async function route_packages(page) {
   });
 }
 
-/** The share of a picture that has a colour. */
+/** The share of a picture that has this colour. */
 async function share_of(page, picture, colour) {
   return page.evaluate(async ([base64, colour]) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -108,7 +108,7 @@ for (const client of CLIENTS) {
       };
     }
     await save_screenshot(page, `share-${client.toLowerCase()}`);
-    // At zoom 5 and 512 pixels, as on the screen of the viewer: 3 by 3 degrees of lake.
+    // At zoom 5 and 512 pixels, as on the viewer's screen: 3 by 3 degrees of lake.
     const lake = (3 / 360) * 2 ** 5 * 256 / SIZE;
     assert.ok(Math.abs(shares.lake - lake * lake * 1.43) < 0.008, `the lake fills ${shares.lake}`);
     assert.ok(shares.land > 0.1, `the land fills ${shares.land}`);

@@ -1,4 +1,4 @@
-// How the layers that are on are asked for together.
+// How the visible layers are requested together.
 import assert from "node:assert/strict";
 import test from "node:test";
 

@@ -1,5 +1,5 @@
-// For everybody: no violation that axe finds in any state of the page, targets for fingers, a page that is
-// small and soon there.
+// Accessibility: axe finds no violation in any state of the page, targets are large enough for fingers,
+// and the page is small and quickly usable.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -113,7 +113,7 @@ const STATES = {
   "all layers off": { hash: "#5/46/10&on=", is_empty: true },
 };
 
-/** What axe finds, each with the elements. */
+/** The violations that axe finds, each with its elements. */
 async function violations(page) {
   await page.evaluate(AXE);
   return page.evaluate(async () => {
@@ -123,10 +123,10 @@ async function violations(page) {
   });
 }
 
-/** What can be pressed and is smaller than a finger wants it, if it can be seen. */
+/** Visible controls that are too small for a finger. */
 function small_targets(page) {
   return page.evaluate((target) => {
-    // A link within a sentence is as high as its line; a box counts with the label around it.
+    // A link within a sentence is as high as its line; a checkbox counts together with its label.
     const pressed = "button, select, summary, input, a.download, .links a, [role=button]";
     const found = [...document.querySelectorAll(pressed)].filter((control) =>
       control.checkVisibility({ visibilityProperty: true }) && !control.closest("#legend-body"));
@@ -189,7 +189,7 @@ test("the page can be used, and how soon after the server has answered is told",
       new MutationObserver((_, observer) => {
         if (!document.querySelector("#layers .layer")) return;
         observer.disconnect();
-        // When this frame is over, all that was to be done has been done.
+        // After this frame, all pending work is done.
         setTimeout(() => (window.usable_at = performance.now()));
       }).observe(document, { childList: true, subtree: true });
     });

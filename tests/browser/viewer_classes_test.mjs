@@ -1,4 +1,4 @@
-// Classes of colours: suggested from the values that the map has, and told in the legend.
+// Colours by class: suggested from the values in the map, and explained in the legend.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -13,7 +13,8 @@ import {
 const folder = mkdtempSync(join(tmpdir(), "trapeze-classes-"));
 after(() => rmSync(folder, { recursive: true }));
 
-// Twenty columns of a degree, from 0 to 20 east: their numbers are squares, the last is far away.
+// Twenty columns a degree wide, from 0 to 20 east: their numbers are squares, the last is an
+// outlier.
 const columns = Array.from({ length: 20 }, (_, i) => ({
   type: "Feature",
   properties: { name: `column ${i}`, number: i < 19 ? i * i : 10_000, half: i < 10 ? "west" : "east" },

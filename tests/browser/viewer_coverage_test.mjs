@@ -1,4 +1,5 @@
-// Polygons that share borders: beside them, the viewer shows the same ones each by itself.
+// Polygons with shared borders, compared in the viewer with the same polygons simplified one by
+// one.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import test from "node:test";
@@ -8,7 +9,8 @@ import {
   start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
-// Two that have a crooked border in common, which runs through the tile 3/5/3; they cover it wholly.
+// Two fields with a crooked shared border, which crosses the tile 3/5/3; together they cover the
+// tile.
 const FIELDS = `
 [[layer]]
 name = "fields"
@@ -28,7 +30,7 @@ const COLOURS = "&fields.color-by=name&fields.classes=west:cc4444,east:4444cc";
 
 const { browser, server } = await start_browser_and_server([], FIELDS);
 
-/** How many pixels of that tile can be looked through, in each of the two panes. */
+/** The number of transparent pixels of that tile in each of the two panes. */
 function holes_by_pane(page) {
   return page.evaluate(() => Object.fromEntries(["simplified", "full"].map((pane) => {
     const tile = document.querySelector(`.leaflet-${pane}-pane img[src*="/tiles/fields/3/5/3"]`);

@@ -1,4 +1,4 @@
-// What lies under a click is told and outlined.
+// The features under a click are described and outlined.
 import assert from "node:assert/strict";
 import test from "node:test";
 
@@ -21,7 +21,7 @@ async function open(hash, options = undefined) {
 
 const outlined = (page, layer) => pixels_of_colour(page, layer, OUTLINE);
 
-/** Until the feature is outlined, over a map that has stayed as it was. */
+/** Waits until the tiles above the map outline this feature and no other. */
 async function wait_for_outline(page, layer, id) {
   await page.waitForFunction((wanted) => {
     const tiles = [...document.querySelectorAll(".leaflet-chosen-pane img.leaflet-tile")];
@@ -39,7 +39,7 @@ async function wait_for_no_outline(page) {
   await tiles_drawn(page);
 }
 
-/** Opaque colours of the outline's tiles other than that of the line. */
+/** The opaque colours in the outline's tiles, except the colour of the line. */
 function filled(page, layer) {
   return page.evaluate(([layer, line]) => {
     const found = new Set();
@@ -90,7 +90,8 @@ test("a click tells the attributes under the title and outlines the feature; the
 
 test("of several features one is chosen by button, and one is gone to", async () => {
   const { page, seen, features } = await open("#5/46/10&on=land");
-  // The island of the source has no other feature above or below it: the server's answer is doubled.
+  // In the source, the island does not overlap any other feature, so the server's answer is doubled
+  // here.
   await page.route("**/identify/**", async (route) => {
     const response = await route.fetch();
     const told = await response.json();
@@ -142,7 +143,8 @@ test("only what is drawn is found: layers that are off and filtered features are
 
 test("a click beside everything says so, and a double click asks nothing", async () => {
   const { page, seen, features } = await open("#5/46/10");
-  // All of it at once: a busy machine may put more between the clicks than a double click has.
+  // Both clicks in one step: a busy machine may delay the second click beyond a double click's
+  // limit.
   await page.evaluate(() => {
     const place = { bubbles: true, clientX: 640, clientY: 400 };
     const click = ["mousedown", "mouseup", "click"];
@@ -150,7 +152,7 @@ test("a click beside everything says so, and a double click asks nothing", async
     for (const type of [...click, ...click, "dblclick"]) target.dispatchEvent(new MouseEvent(type, place));
   });
   await page.waitForFunction(() => location.hash.startsWith("#6/"));
-  await page.waitForTimeout(500); // in which it could ask
+  await page.waitForTimeout(500); // time enough to send a request
   assert.equal(await features.isVisible(), false);
   assert.ok(!seen.requests.some((url) => url.includes("/identify/")));
   await page.goto(`${server.base}#5/46/-40`);
@@ -198,7 +200,7 @@ test("of a feature in parts, it goes to the part under the click", async () => {
   await page.context().close();
 });
 
-/** What shows where the focus is on the map: its own line, and the mark in the middle. */
+/** The signs of keyboard focus on the map: its outline, and the mark in the middle. */
 function marks_of_focus(page) {
   return page.evaluate(() => {
     const map = document.querySelector("#map");

@@ -1,4 +1,4 @@
-// What is seen first: the map that the server wants to be seen, and three things to try.
+// The first view: the map that the server configures, and three things to try.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import test from "node:test";
@@ -46,7 +46,7 @@ async function open(hash = "", options = undefined) {
   return { page, seen, offer: page.locator("#try") };
 }
 
-/** What the tiles of "fields" are asked for with, once all of them are asked alike, or in two ways. */
+/** Waits until the tiles of "fields" are requested with exactly these queries. */
 async function wait_for_queries(page, ...wanted) {
   const text = (queries) => JSON.stringify(queries.map((query) => Object.entries(query).sort()).sort());
   const end = Date.now() + 20_000;
@@ -141,7 +141,7 @@ test("restyle by click: every look is shown as a tile of it, and taken by a clic
   await page.waitForSelector("img.leaflet-tile[src*='fields.pattern=hatch']");
   await tiles_drawn(page);
   await save_screenshot(page, "desktop-try-restyle");
-  // Closed, too, what was there before comes back.
+  // Closing the offer also restores the earlier state.
   await offer.getByRole("button", { name: "Back" }).click();
   await offer.getByRole("button", { name: "Close" }).click();
   await wait_for_queries(page, { style: "dusk" });
@@ -169,7 +169,7 @@ test("where the data ends, a line says so and leads back", async () => {
   await status.getByRole("button", { name: "Back to zoom 6" }).click();
   await status.waitFor({ state: "hidden" });
   assert.match(await hash_of(page), /^#6\//);
-  // Where a layer is true for longer, and where nobody knows, nothing is said.
+  // Nothing is shown if the layer is accurate at deeper zooms, or if nobody knows.
   await page.evaluate(() => (location.hash = "#7/45.5/6.5&on=fields,pond"));
   await page.waitForFunction(() => document.querySelector("img.leaflet-tile[src*='/7/']"));
   await tiles_drawn(page);
@@ -190,7 +190,7 @@ test("on an upright tablet the panel is folded, so that both sides of a comparis
   for (const side of [".left", ".right"]) {
     const is_on_top = await page.locator(`.divider ${side}`).evaluate((label) => {
       const { x, y, width, height } = label.getBoundingClientRect();
-      // Labels let clicks through: what hides them is what else would be hit there.
+      // Labels let clicks through: any element that hides them would be hit there.
       const hit = document.elementFromPoint(x + width / 2, y + height / 2);
       return x >= 0 && x + width <= window.innerWidth && Boolean(hit?.closest("#map"));
     });
@@ -203,7 +203,7 @@ test("on an upright tablet the panel is folded, so that both sides of a comparis
   await page.context().close();
 });
 
-/** What is shown of `parts` is within the window, and nothing of it lies over another thing. */
+/** Expects that all visible elements in `parts` are inside the window and do not overlap. */
 async function assert_in_window_and_apart(page, parts) {
   const window = page.viewportSize();
   const boxes = [];

@@ -1,4 +1,4 @@
-// Thirty layers: found, switched, put in another order, gone to.
+// Thirty layers: finding, switching, reordering and zooming to them.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import test from "node:test";
@@ -31,7 +31,7 @@ async function open(hash = "#5/46/10", options = DESKTOP) {
   return { page, seen };
 }
 
-/** The layers that tiles show, the lowest first. */
+/** The layers in the tiles, the lowest first. */
 async function layers_drawn(page) {
   const sheets = await page.evaluate(() =>
     [...document.querySelectorAll(".leaflet-simplified-pane .leaflet-layer")]
@@ -102,7 +102,7 @@ test("a group is switched by its heading, which shows whether all of it is on", 
   assert.equal(await group.isChecked(), true);
   await page.getByRole("checkbox", { name: "Rivers 3" }).uncheck();
   assert.equal(await group.evaluate((box) => box.indeterminate), true);
-  await group.click(); // of what is on in part, a click makes all
+  await group.click(); // a click on a partly checked group turns all of it on
   await wait_for_layers(page, ALL);
   await group.uncheck();
   await wait_for_layers(page, ALL.filter((name) => !names.slice(0, 7).includes(name)));
@@ -151,7 +151,7 @@ test("a layer is dragged by its handle to where it is dropped", async () => {
     await page.mouse.move(x, y + by, { steps: 6 });
     await page.mouse.up();
   };
-  await drag("Houses 6", "Houses 4", 10); // the topmost, below the third
+  await drag("Houses 6", "Houses 4", 10); // from the top to below the third
   await wait_for_layers(page, ["layer_28", "layer_26", "layer_27"]);
   assert.deepEqual((await titles(page)).slice(0, 3), ["Houses 5", "Houses 4", "Houses 6"]);
   await drag("Houses 6", "Houses 5", -10);

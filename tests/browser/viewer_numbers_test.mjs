@@ -1,5 +1,5 @@
-// Numbers of one's own: a table is pasted, joined to a layer by a key, and seen on the map. Names of a table, in
-// the language of the browser.
+// The user's own numbers: a table is pasted, joined to a layer by a key, and shown on the map. Names of a table
+// in the language of the browser.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -63,7 +63,7 @@ async function open(hash, options = DESKTOP) {
   return { page, seen, form: page.locator("#layers li").filter({ has: page.getByLabel("Style of Columns") }) };
 }
 
-/** A table as a spreadsheet copies it; the columns 10 and 11 are not in it, and "XX" is no column. */
+/** A table as a spreadsheet copies it; the columns 10 and 11 are missing, and "XX" is not a column. */
 function copied(header, value_of) {
   const rows = columns.slice(0, 10).map(({ properties: { code } }, i) => `${code}\tname ${i}\t${value_of(i)}`);
   return [header, ...rows, "XX\tnowhere\t7"].join("\r\n");
@@ -93,7 +93,7 @@ test("a pasted table colours the layer, says what does not match, and is in the 
   await page.waitForFunction(() => /columns\.breaks=equal(:|%3A)3&/.test(location.hash));
   await page.waitForFunction(() => document.querySelector("#legend-body").textContent.includes("0 to 27"));
   await save_screenshot(page, "desktop-numbers");
-  // The link shows the same, with the controls as they were.
+  // The link shows the same map, and the controls have the same state.
   const hash = await hash_of(page);
   const again = await open(hash);
   await again.page.waitForFunction(() => document.querySelector("#legend-body h2"));

@@ -1,5 +1,5 @@
-// What fails is told in a line, and comes by itself when it can: the server stops and starts again,
-// reads its layers, has too much to do, or will not draw.
+// Failures are reported in a status line and recover automatically: the server stops and starts
+// again, reloads its layers, is overloaded, or refuses to draw.
 import assert from "node:assert/strict";
 import test from "node:test";
 
@@ -8,11 +8,11 @@ import {
   tiles_drawn,
 } from "./served_viewer.mjs";
 
-const FAILED_RESOURCE = /^Failed to load resource/; // said of every answer that is not 2xx
+const FAILED_RESOURCE = /^Failed to load resource/; // Chromium's message for every answer that is not 2xx
 
 const { browser, server } = await start_browser_and_server();
 
-/** Not waited for: the tiles, before which a message may have come and gone. */
+/** Does not wait for the tiles: a message may come and go before they are drawn. */
 async function begin(hash, options = undefined) {
   const { page, seen } = await new_page(browser, options);
   await page.goto(server.base + hash);
@@ -29,7 +29,7 @@ function pan(page) {
   return page.evaluate(() => (location.hash = "#7/46.5/12"));
 }
 
-/** From now on every "in N s" of the line is kept; pauses are not longer than they have to be. */
+/** Records every "in N s" in the status line from now on, and makes pauses as short as possible. */
 function keep_what_is_told(page) {
   return page.evaluate(() => {
     Math.random = () => 0;
@@ -46,12 +46,12 @@ function told_seconds(page) {
   return page.evaluate(() => window.told_seconds);
 }
 
-/** Until the line has told of a pause of so many seconds. */
+/** Waits until the status line has shown a pause of this many seconds. */
 function pause_begins(page, seconds) {
   return page.waitForFunction((wanted) => window.told_seconds.includes(wanted), seconds, { polling: 50 });
 }
 
-/** [1, 2, 1, 4, 3, ...]: seconds are counted down, and a higher number begins a pause. */
+/** [1, 2, 1, 4, 3, ...]: seconds count down, and a higher number starts a new pause. */
 function first_of_each_pause(seconds) {
   return seconds.filter((one, i) => i === 0 || one > seconds[i - 1]);
 }
@@ -85,7 +85,7 @@ test("pauses grow while the server is away, and end at once by hand, or when the
       await pause_begins(page, 4);
       const before = seen.requests.length;
       await pause_begins(page, 8);
-      // One request a pause, however many tiles are missing.
+      // One request a pause, regardless of the number of missing tiles.
       assert.deepEqual(seen.requests.slice(before).map((url) => new URL(url).pathname), ["/ready"]);
       assert.deepEqual(first_of_each_pause(await told_seconds(page)), [1, 2, 4, 8]);
       await status.getByRole("button", { name: "Try now" }).click();
@@ -247,7 +247,7 @@ test("a tile too dear by itself is told in a line until it is out of sight, and 
     const status = page.locator("#status");
     await status.getByText("There is too much to draw here. Zoom in, or simplify more.").waitFor();
     await save_screenshot(page, "desktop-too-dear");
-    await page.waitForTimeout(3000); // in which it could ask again
+    await page.waitForTimeout(3000); // time enough to send another request
     const tiles = seen.requests.filter((url) => url.includes("/5/"));
     const most = Math.max(...tiles.map((url) => tiles.filter((other) => other === url).length));
     assert.ok(most <= 2, `${most} times: as a picture, and to learn the reason`);
@@ -290,12 +290,12 @@ test("a line at the top shows that tiles are on their way, and goes when they ar
   });
   await page.goto(`${server.base}#5/46/10`);
   await page.locator(".progress.shown").waitFor();
-  await page.waitForFunction(() => { // it moves softly
+  await page.waitForFunction(() => { // it moves smoothly
     const { width } = document.querySelector(".progress").getBoundingClientRect();
     return width > 100 && width < 1200;
   });
   await save_screenshot(page, "desktop-progress");
-  // What was on its way is not wanted any more, and not waited for.
+  // Pending tiles are no longer needed, and the viewer does not wait for them.
   await page.click(".leaflet-control-zoom-in");
   await at_rest(page);
   let_go();

@@ -1,4 +1,4 @@
-// Every control of the viewer changes the tiles that it asks for, and the address keeps it.
+// Every control of the viewer changes the requested tiles, and the address keeps it.
 import assert from "node:assert/strict";
 import test from "node:test";
 
@@ -7,11 +7,11 @@ import {
   save_screenshot, shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
-const FAILED_RESOURCE = /^Failed to load resource/; // said of every answer that is not 2xx
+const FAILED_RESOURCE = /^Failed to load resource/; // Chromium's message for every answer that is not 2xx
 
 const { browser, server } = await start_browser_and_server();
 
-/** A page with the panel and the style of the layer "Land" unfolded. */
+/** Opens a page with the panel and the style of the layer "Land" unfolded. */
 async function open(hash = "#5/46/10", options = undefined) {
   const { page, seen } = await new_page(browser, options);
   await page.goto(server.base + hash);
@@ -25,7 +25,7 @@ async function open(hash = "#5/46/10", options = undefined) {
   return { page, seen, land };
 }
 
-/** Waits until the layer is asked for in all of its tiles with just these parameters. */
+/** Waits until all tiles of the layer are requested with exactly these parameters. */
 async function wait_for_query(page, name, wanted) {
   const text = (query) => JSON.stringify(Object.entries(query).sort());
   const end = Date.now() + 30_000;
@@ -38,7 +38,7 @@ async function wait_for_query(page, name, wanted) {
   await tiles_drawn(page);
 }
 
-/** The same tiles come again from the address alone. */
+/** Expects that the address alone restores the same tiles. */
 async function assert_survives_reload(page) {
   const hash = await hash_of(page);
   const tiles = await shown_tiles(page);
@@ -49,7 +49,7 @@ async function assert_survives_reload(page) {
   assert.equal(await hash_of(page), hash);
 }
 
-/** Sets a slider as the keyboard does: its own steps, and a change at the end. */
+/** Sets a slider as with the keyboard: in its own steps, with a change event at the end. */
 async function slide(locator, value) {
   await locator.fill(String(value));
 }
@@ -224,7 +224,7 @@ test("an answer that comes late does not undo what was changed since", async () 
   await wait_for_query(page, "land", { fill: "00ff00" });
   let_go();
   await (await late).finished();
-  await page.waitForTimeout(500); // in which it could be taken
+  await page.waitForTimeout(500); // time enough for the late answer to be used
   await wait_for_query(page, "land", { fill: "00ff00" });
   assert.ok(!seen.tiles.some(({ url }) => url.includes("ff0000")));
   assert_nothing_went_wrong(server, seen);
@@ -273,7 +273,7 @@ test("what is set for a layer holds over what a named style sets for it, also wh
     assert.ok((await pixels_of_colour(page, "land", [0, 255, 0])) > 1000);
     const swatch = page.locator("#legend li", { hasText: "others" }).locator(".ink");
     assert.equal(await swatch.evaluate((ink) => getComputedStyle(ink).backgroundColor), "rgb(0, 255, 0)");
-    // What is wrong with it is told beside the control.
+    // The error is shown beside the control.
     await land.getByLabel("Filter").fill("nobody = 1");
     await page.keyboard.press("Tab");
     await land.locator("fieldset[aria-label=Features] .problem").waitFor();
@@ -320,7 +320,7 @@ test("detail: simplify, topology, small and debug hold for all layers", async ()
   await page.context().close();
 });
 
-/** Colour of the map on the screen at (x, y), by a picture of the page. */
+/** The colour of the map on the screen at (x, y), taken from a screenshot of the page. */
 async function colour_on_screen(page, x, y) {
   const picture = await page.screenshot({ clip: { x, y, width: 1, height: 1 } });
   return page.evaluate(async (bytes) => {
@@ -368,7 +368,7 @@ test("compare shows every vertex right of a divider that pointer and keyboard mo
 
 test("compare: each side shows its own picture, also after the map was moved", async () => {
   const { page, seen } = await new_page(browser);
-  // Full detail is painted here, as no style can tell the two apart.
+  // The full-detail side gets another colour here, as no style can tell the two sides apart.
   await page.route("**/tiles/land/**simplify=0**", async (route) => {
     const url = route.request().url();
     await route.continue({ url: `${url}&fill=ff0000` });
@@ -383,7 +383,7 @@ test("compare: each side shows its own picture, also after the map was moved", a
   await page.focus("#map");
   const before = await hash_of(page);
   await page.keyboard.press("ArrowRight");
-  await page.waitForFunction((hash) => location.hash !== hash, before); // written when the map has come to rest
+  await page.waitForFunction((hash) => location.hash !== hash, before); // written once the map has come to rest
   await tiles_drawn(page);
   await assert_sides();
   assert.deepEqual(seen.errors, []);
@@ -412,7 +412,7 @@ test("the address of the tiles gives the picture that is shown, and can be copie
 test("the time of tiles is told, and how many were kept", async () => {
   const { page, seen, land } = await open();
   const timing = page.locator("#timing");
-  await land.getByLabel("Colour of Land").fill("#123456"); // of no other test: none is kept
+  await land.getByLabel("Colour of Land").fill("#123456"); // used in no other test, so no tile is cached
   await wait_for_query(page, "land", { fill: "123456" });
   await timing.getByText(/^median [\d.]+ ms, drawing [\d.]+ ms, \d+ of \d+ from a cache$/).waitFor();
   await page.reload();

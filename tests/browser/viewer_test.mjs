@@ -7,7 +7,7 @@ import {
   save_screenshot, shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
-// Chromium says this of every answer that is not 2xx; some tests make such answers on purpose.
+// Chromium's message for every answer that is not 2xx; some tests cause such answers on purpose.
 const FAILED_RESOURCE = /^Failed to load resource/;
 
 const { browser, server } = await start_browser_and_server();
@@ -21,7 +21,7 @@ async function open(hash = "", options = undefined) {
 
 const zoom_of = (tile_url) => Number(/\/tiles\/[^/]+\/(\d+)\//.exec(tile_url)[1]);
 
-/** The other tiles that are shown after `action`. */
+/** The tiles that are shown after `action` but not before. */
 async function new_tiles_after(page, action) {
   const before_it = new Set(await shown_tiles(page));
   const hash = await hash_of(page);
@@ -128,9 +128,9 @@ test("a layer can be switched off and coloured, and the address keeps it", async
   await page.context().close();
 });
 
-/** Until there are no tiles but of the layer lake at `zoom`. */
+/** Waits until all tiles are of the layer lake at `zoom`. */
 function only_lake_at(page, zoom) {
-  // Leaflet keeps tiles of the zoom before until a moment after the new ones have come.
+  // Leaflet keeps tiles of the previous zoom until a moment after the new ones have arrived.
   return page.waitForFunction((part) =>
     [...document.querySelectorAll("img.leaflet-tile")].every((tile) => tile.src.includes(part)),
   `/lake/${zoom}/`);
@@ -168,7 +168,7 @@ test("of addresses typed one upon the other the last one holds", async () => {
       await new Promise((resolve) => setTimeout(resolve));
     }
     location.hash = "#7/47/8&on=lake";
-    // As an answer of the server does that comes just then.
+    // Simulates an answer of the server that arrives at this moment.
     history.replaceState(null, "", "#5/46/10");
   });
   await only_lake_at(page, 7);

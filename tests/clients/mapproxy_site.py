@@ -1,4 +1,4 @@
-"""MapProxy as an application within the test, without a socket."""
+"""MapProxy as an application inside the test, without a socket."""
 
 import io
 import os
@@ -12,7 +12,7 @@ except ImportError as error:
     skip(f"MapProxy is not installed ({error})")
 
 
-# The end of a configuration, before its {folder} is named.
+# The last part of a configuration; {folder} is not filled in yet.
 GLOBALS = """
 globals:
   cache:
@@ -24,7 +24,7 @@ globals:
 
 
 class MapProxySite:
-    """Of a configuration, which is written into a folder."""
+    """A site with this configuration, which is written into a folder."""
 
     def __init__(self, config, folder):
         file_name = os.path.join(folder, "mapproxy.yaml")
@@ -33,7 +33,7 @@ class MapProxySite:
         self.app = make_wsgi_app(file_name)
 
     def ask(self, path, query=""):
-        """Status and body of a GET."""
+        """Sends a GET request; returns status and body."""
         seen = []
         environ = {
             "REQUEST_METHOD": "GET", "PATH_INFO": path, "QUERY_STRING": query, "SCRIPT_NAME": "",

@@ -1,4 +1,4 @@
-"""MapProxy reads our tiles by the pattern of addresses and serves them as they are."""
+"""MapProxy reads our tiles through a URL template and serves them unchanged."""
 
 import io
 

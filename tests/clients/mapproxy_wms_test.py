@@ -1,4 +1,4 @@
-"""MapProxy takes our maps by WMS: cached as tiles, and brought into a grid that it is not asked for."""
+"""MapProxy requests our maps over WMS: cached as tiles, and reprojected to a grid that it does not request."""
 
 import io
 import os
@@ -52,7 +52,7 @@ sources:
     req: *request
     wms_opts: *options
 """ + GLOBALS
-PLACE = (200000, 4700000, 1200000, 5700000)  # of UTM, with the lake, the bay and the eastern coast
+PLACE = (200000, 4700000, 1200000, 5700000)  # in UTM, with the lake, the bay and the eastern coast
 SIZE = 500
 TOLERANCE = 2  # of 255: MapProxy rounds sides of windows
 MOST_WARPED = 0.02  # of all pixels, those along borders

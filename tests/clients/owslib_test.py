@@ -1,4 +1,4 @@
-"""OWSLib reads our capabilities of WMS, and gets maps, features and exceptions by them."""
+"""OWSLib reads our WMS capabilities, and requests maps, features and exceptions with them."""
 
 import sys
 
@@ -38,7 +38,7 @@ def check(base, version):
     white = wms.getmap(layers=["land"], styles=[""], bgcolor="#FFFFFF", **COMMON).read()
     assert white == own_map(base, "&background=fff"), f"{version}: another background"
 
-    # In degrees, OWSLib brings the axes into the order of the version.
+    # For boxes in degrees, OWSLib puts the axes into the order of the version.
     for system in ("EPSG:4326", "CRS:84"):
         if system == "CRS:84" and version == "1.1.1":
             continue

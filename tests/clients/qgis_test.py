@@ -1,4 +1,4 @@
-"""QGIS, without a window, shows our tiles and maps, and tells features by WMTS and WMS."""
+"""QGIS, without a window, shows our tiles and maps, and identifies features over WMTS and WMS."""
 
 import os
 import sys
@@ -6,7 +6,7 @@ import tempfile
 
 from served_map import get, served_map, skip
 
-# No window, and nothing of what the user has set.
+# No window, and no settings of the user.
 profile = tempfile.TemporaryDirectory(prefix="trapeze-qgis-")
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
 os.environ["QGIS_CUSTOM_CONFIG_PATH"] = profile.name
@@ -29,15 +29,15 @@ ROWS = (10, 11)
 EXTENT = QgsRectangle(COLUMNS[0] * SIDE - HALF, HALF - (ROWS[1] + 1) * SIDE,
                       (COLUMNS[1] + 1) * SIDE - HALF, HALF - ROWS[0] * SIDE)
 SIZE = 512
-TOLERANCE = 2  # of 255: QGIS blends by other rounding
+TOLERANCE = 2  # of 255: QGIS rounds differently when blending
 MOST_DIFFERING = 0.0005  # of all pixels
-# Of WMTS, QGIS draws what lies within the bounds of the layer, whose edges it rounds to pixels: the map
-# is up to a pixel off, which is seen along borders.
+# From WMTS, QGIS draws only inside the bounds of the layer, whose edges it rounds to pixels: the map is
+# shifted by up to a pixel, which shows along borders.
 MOST_DIFFERING_OF_WMTS = 0.008
 
 
 def tiles_of(pattern):
-    """Our own tiles put together on white."""
+    """Our own tiles, put together on white."""
     picture = QImage(SIZE, SIZE, QImage.Format_RGB32)
     picture.fill(Qt.white)
     painter = QPainter(picture)
@@ -93,7 +93,7 @@ def check_features(layer):
 
 
 def check_print(base):
-    """On paper, at twice the dots to an inch, lines are as wide: twice as many pixels."""
+    """In print, at twice the resolution, lines have the same width: twice as many pixels."""
     layer = QgsRasterLayer("IgnoreReportedLayerExtents=1&contextualWMSLegend=0&crs=EPSG:3857&dpiMode=7&format=image/png&layers=land"
                            f"&styles=default&url={base}wms?stroke%3D000%26stroke-width%3D4",
                            "print", "wms")
@@ -116,7 +116,7 @@ def check_print(base):
 
 
 def check_degrees(base, name, source):
-    """A map in EPSG:4326, which QGIS asks for with the axes in the order of the version."""
+    """A map in EPSG:4326, which QGIS requests with the axes in the order of the version."""
     extent = QgsRectangle(0, 33.75, 22.5, 56.25)  # four tiles of WorldCRS84Quad
     layer = QgsRasterLayer(source, name, "wms")
     assert layer.isValid(), f"{name}: {layer.error().message()}"

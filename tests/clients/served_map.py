@@ -10,7 +10,7 @@ import urllib.request
 from contextlib import contextmanager
 
 SKIPPED = 77
-START_SECONDS = 60  # sanitizers on a busy machine
+START_SECONDS = 60  # enough for sanitizers on a busy machine
 FIXTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "browser")
 
 CONFIG = """

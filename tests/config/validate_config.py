@@ -3,8 +3,8 @@
 
     validate_config.py SCHEMA [--refuse] CONFIG ...
 
-With --refuse, every configuration must break the schema instead. Exit status 1 if any is not as it
-should be; 77, which CTest takes for skipped, if Debian's python3-jsonschema is not installed.
+With --refuse, every configuration must violate the schema instead. Exits with status 1 if a configuration is
+not as expected, and with 77 (skipped, for CTest) if Debian's python3-jsonschema is not installed.
 """
 import json
 import sys

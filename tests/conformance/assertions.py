@@ -1,4 +1,4 @@
-"""Assertions about a running server, each by the name or number that the OGC's test suite gives it."""
+"""Assertions about a running server, each under the name or number that the OGC's test suite gives it."""
 
 import io
 import os
@@ -18,7 +18,7 @@ try:
 except ImportError as error:
     skip(f"python3-lxml and python3-pil are not installed ({error})")
 
-# Debian's MapProxy brings the schemas of the OGC along.
+# Debian's MapProxy package contains the OGC schemas.
 SCHEMAS = "/usr/share/python3-mapproxy/test/schemas"
 
 
@@ -46,7 +46,7 @@ def ask(url):
 
 
 def in_odd_case(key):
-    """"REQUEST" as "ReQuEsT": names of parameters may be written in any case of letters."""
+    """"REQUEST" as "ReQuEsT": parameter names are case-insensitive."""
     return "".join(c.upper() if i % 2 == 0 else c.lower() for i, c in enumerate(key))
 
 
@@ -64,7 +64,7 @@ def expect_picture(answer, kind, size=None):
 
 
 class NearbySchemas(etree.Resolver):
-    """Those of the OGC and of the W3C from files, and nothing from the network."""
+    """Resolves the schemas of the OGC and the W3C to local files, and loads nothing from the network."""
 
     def resolve(self, url, public_id, context):
         for prefix in ("http://schemas.opengis.net", "https://schemas.opengis.net"):
@@ -79,14 +79,14 @@ def has_schemas():
     return os.path.isdir(SCHEMAS)
 
 
-# The schema as it was first published had tiles counted from 1, unlike the standard; the OGC has mended it.
+# As first published, the schema counted tiles from 1, unlike the standard; the OGC has corrected it.
 ROW_ZERO = re.compile(r"(Min|Max)Tile(Row|Col)': '0' is not a valid value of the atomic type 'xs:positiveInteger'")
 
 _schemas = {}
 
 
 def expect_valid(document, schema):
-    """Against an XML Schema or a DTD of the OGC, where Debian's are installed."""
+    """Validates against an XML Schema or a DTD of the OGC, where Debian's are installed."""
     if not has_schemas():
         return
     path = os.path.join(SCHEMAS, schema)
@@ -105,7 +105,7 @@ def expect_valid(document, schema):
 
 
 class Suite:
-    """Assertions in the order they are written; a failure does not hide those that follow."""
+    """Assertions in the order in which they are written; a failure does not hide those that follow."""
 
     def __init__(self, title):
         self.title = title
@@ -124,7 +124,7 @@ class Suite:
             count += len(names)
             try:
                 function(*arguments)
-            except Exception as error:  # whatever goes wrong is about that assertion
+            except Exception as error:  # any error counts against that assertion
                 failed += 1
                 print(f"FAILED {', '.join(names)}\n  {function.__doc__}\n  "
                       f"{type(error).__name__}: {error}")

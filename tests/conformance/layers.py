@@ -1,4 +1,4 @@
-"""A running `trapeze serve` of three layers in a corner of Europe, for the assertions of the test suites."""
+"""A running `trapeze serve` with three layers in a corner of Europe, for the assertions of the test suites."""
 
 import json
 import os
@@ -49,7 +49,7 @@ def box(west, south, east, north):
     return [[[west, south], [east, south], [east, north], [west, north], [west, south]]]
 
 
-# Two ponds lie over each other at 7.5 E, 46.5 N.
+# Two ponds overlap at 7.5 E, 46.5 N.
 POLYGONS = {
     "woods": [box(6.2, 45.4, 8.1, 46.9)],
     "ponds": [box(6.5, 46.0, 7.0, 46.4), box(7.3, 46.3, 7.7, 46.7), box(7.4, 46.4, 7.9, 46.6)],

@@ -1,7 +1,7 @@
-"""WMS 1.3.0: every assertion of the OGC's test suite that can be decided by a program, by the names of its tests.
+"""WMS 1.3.0: every assertion of the OGC's test suite that a program can decide, under the names of its tests.
 
-Those about dimensions, AUTO2, opaque layers, update sequences, and metadata that nobody has given hold of what
-there is not; each expects that there is none, so that it cannot be forgotten once there is.
+Dimensions, AUTO2, opaque layers, update sequences and unset metadata do not exist here. The assertions about them
+check that they are absent, so that the tests fail once one of them is added.
 """
 
 import json
@@ -28,7 +28,7 @@ suite = Suite("WMS 1.3.0")
 
 
 class Service:
-    """What the capabilities say, and requests by the addresses that they give."""
+    """The contents of the capabilities, and requests to the URLs in them."""
 
     def __init__(self, base):
         self.base = base
@@ -69,7 +69,7 @@ class Service:
         return ask(with_query(self.prefix("GetFeatureInfo"), **{**usual, **pairs}))
 
     def lineage(self, layer):
-        """The layer and those around it, the innermost first."""
+        """The layer and its parents, the innermost first."""
         while layer is not None and layer.tag == WMS + "Layer":
             yield layer
             layer = self.parents.get(layer)
@@ -114,7 +114,7 @@ def colours(picture):
 @suite("basic_elements:negotiate-no-version", "basic_elements:negotiate-higher-version",
        "basic_elements:negotiate-basic_elements-version", "basic_elements:negotiate-lower-version")
 def _(wms):
-    """The version is the one that is asked for, or the highest below it, or the highest or the lowest there is."""
+    """The version is the requested one, else the highest below it, else the lowest; by default the highest."""
     versions = {None: "1.3.0", "1.3.0": "1.3.0", "100.0.0": "1.3.0", "0.0.0": "1.1.1"}
     for asked, answered in versions.items():
         root = wms.capabilities(VERSION=asked).xml()
@@ -123,14 +123,14 @@ def _(wms):
 
 @suite("basic_elements:escaped-chars")
 def _(wms):
-    """Values may be escaped altogether."""
+    """Values may be percent-encoded completely."""
     escaped = "".join(f"%{ord(c):02X}" for c in "GetCapabilities")
     expect_capabilities(ask(wms.prefix("GetCapabilities") + f"SERVICE=WMS&VERSION=1.3.0&REQUEST={escaped}"))
 
 
 @suite("basic_elements:escaped-space")
 def _(wms):
-    """A plus is a space: in no name of a layer, but in what is looked for."""
+    """In a value, a plus is a space; no layer name contains a space."""
     assert all(" " not in name for name in wms.names)
     one = wms.map(filter="name='ponds 0'")
     expect_picture(one, wms.png)
@@ -142,7 +142,7 @@ def _(wms):
 @suite("basic_elements:extra-GetCapabilities-param", "basic_elements:extra-GetMap-param",
        "basic_elements:extra-GetFeatureInfo-param")
 def _(wms):
-    """Parameters that the standard does not define are passed over."""
+    """Parameters that the standard does not define are ignored."""
     expect_capabilities(wms.capabilities(VERSION="1.3.0", BOGUS="ignored"))
     expect_picture(wms.map(BOGUS="ignored"), wms.png, (100, 100))
     answer = wms.info(BOGUS="ignored")
@@ -154,7 +154,7 @@ def _(wms):
 
 @suite("getcapabilities:each-format", "getcapabilities:no-format", "getcapabilities:invalid-format")
 def _(wms):
-    """A format that is offered is sent; text/xml without one, or for one that there is not."""
+    """An offered format is sent; text/xml if no format or an unknown one is requested."""
     for kind in wms.formats("GetCapabilities"):
         expect_capabilities(wms.capabilities(VERSION="1.3.0", FORMAT=kind), kind)
     expect_capabilities(wms.capabilities(VERSION="1.3.0"))
@@ -164,7 +164,7 @@ def _(wms):
 @suite("getcapabilities:updatesequence-ignored", "getcapabilities:updatesequence-current",
        "getcapabilities:updatesequence-lower", "getcapabilities:updatesequence-higher")
 def _(wms):
-    """There is no update sequence, and one that is asked for is passed over."""
+    """There is no update sequence, and a requested one is ignored."""
     assert wms.root.get("updateSequence") is None
     for sequence in ("ignored", "0", "9999"):
         expect_capabilities(wms.capabilities(VERSION="1.3.0", UPDATESEQUENCE=sequence))
@@ -172,7 +172,7 @@ def _(wms):
 
 @suite("getcapabilities:normative-schema", "getcapabilities:validate-using-schemaLocation")
 def _(wms):
-    """The document names the schema of the OGC, and is valid by it."""
+    """The document names the schema of the OGC and is valid against it."""
     places = wms.root.get(LOCATION).split()
     schemas = dict(zip(places[::2], places[1::2]))
     assert schemas["http://www.opengis.net/wms"] == (
@@ -182,7 +182,7 @@ def _(wms):
 
 @suite("getcapabilities:capability-onlineresource")
 def _(wms):
-    """Addresses of requests are prefixes, to which a query can be appended."""
+    """The URLs for requests are prefixes to which a query can be appended."""
     links = list(wms.root.find(f"{WMS}Capability/{WMS}Request").iter(WMS + "OnlineResource"))
     assert len(links) >= 4
     for link in links:
@@ -192,7 +192,7 @@ def _(wms):
 @suite("getcapabilities:capability-xml-getcapabilities-format",
        "getcapabilities:capability-xml-exception-format")
 def _(wms):
-    """Capabilities and exceptions can be had as XML."""
+    """Capabilities and exceptions are available as XML."""
     assert "text/xml" in wms.formats("GetCapabilities")
     exceptions = [element.text for element in wms.root.find(f"{WMS}Capability/{WMS}Exception")]
     assert exceptions[0] == "XML", exceptions
@@ -202,7 +202,7 @@ def _(wms):
        "getcapabilities:bbox-distinct-crs", "getcapabilities:crs-present",
        "getcapabilities:crs-auto2-declarations")
 def _(wms):
-    """Every layer has systems, none of AUTO2, and one box of a system that it has."""
+    """Every layer has reference systems, none of them AUTO2, and one box in a system that it has."""
     for layer in wms.layers:
         systems = wms.systems(layer)
         assert systems and not any(name.startswith("AUTO2") for name in systems), systems
@@ -215,7 +215,7 @@ def _(wms):
 
 @suite("getcapabilities:crs-for-all-layers")
 def _(wms):
-    """What all layers are drawn in stands above them."""
+    """The systems that all layers share are listed above them."""
     above = {element.text for element in wms.root.findall(f"{WMS}Capability/{WMS}Layer/{WMS}CRS")}
     common = set.intersection(*(set(wms.systems(layer)) for layer in wms.layers))
     assert common <= above, common - above
@@ -226,7 +226,7 @@ def _(wms):
 
 @suite("getcapabilities:ex_geobbox-present", "getcapabilities:ex_geobbox-coordinates")
 def _(wms):
-    """Every layer has geographic bounds, the west and the south first."""
+    """Every layer has geographic bounds, west and south first."""
     for layer in wms.layers:
         west, east, south, north = (float(side.text) for side in
                                     wms.inherited(layer, "EX_GeographicBoundingBox")[0])
@@ -235,7 +235,7 @@ def _(wms):
 
 @suite("getcapabilities:layer-extents")
 def _(wms):
-    """Boxes in degrees are the geographic bounds, with axes in the order of the system, and have an area."""
+    """Boxes in degrees equal the geographic bounds, with axes in the order of the system, and have an area."""
     for layer in wms.root.iter(WMS + "Layer"):
         west, east, south, north = (float(side.text) for side in
                                     wms.inherited(layer, "EX_GeographicBoundingBox")[0])
@@ -253,7 +253,7 @@ def _(wms):
 @suite("getcapabilities:style-unique", "getcapabilities:style-legendurls",
        "getcapabilities:resource-format", "getcapabilities:resource-size")
 def _(wms):
-    """Styles are named once; their legends are of the size and the type that is told."""
+    """Style names are unique; their legends have the size and the type in the capabilities."""
     for layer in wms.layers:
         names = [style.find(WMS + "Name").text for style in wms.inherited(layer, "Style")]
         assert {"default", "night", "dotted"} == set(names) and len(names) == 3, names
@@ -268,7 +268,7 @@ def _(wms):
        "getcapabilities:style-styleurls", "getcapabilities:authorityurl-unique",
        "getcapabilities:identifier-matches-authorityurl")
 def _(wms):
-    """Of what the configuration cannot say, nothing is claimed."""
+    """Nothing is claimed that the configuration cannot express."""
     for name in ("LogoURL", "DataURL", "FeatureListURL", "MetadataURL", "StyleSheetURL", "StyleURL",
                  "AuthorityURL", "Identifier"):
         assert wms.root.find(f".//{WMS}{name}") is None, name
@@ -287,7 +287,7 @@ def _(wms):
 
 @suite("basic:gif-or-png", "recommendations:png-getmap-format")
 def _(wms):
-    """Maps can be had as PNG."""
+    """Maps are available as PNG."""
     assert "image/png" in wms.map_formats, wms.map_formats
 
 
@@ -295,7 +295,7 @@ def _(wms):
        "getmap:each-crs", "getmap:each-layer", "getmap:each-layer-crs-combination",
        "recommendations:layer-crs")
 def _(wms):
-    """Every layer is drawn in every system that it has, in the box that the capabilities give."""
+    """Every layer is drawn in every system that it has, in the box from the capabilities."""
     for layer, name in zip(wms.layers, wms.names):
         systems = wms.systems(layer)
         assert {"CRS:84", "EPSG:4326", "EPSG:3857", "EPSG:2056"} <= set(systems), systems
@@ -308,7 +308,7 @@ def _(wms):
 
 @suite("getmap:bbox-below-scale", "getmap:bbox-above-scale")
 def _(wms):
-    """Beyond the scales of a layer there is an empty map, and no exception."""
+    """Outside the scales of a layer the map is empty, without an exception."""
     woods = wms.layers[wms.names.index("woods")]
     least = float(woods.find(WMS + "MinScaleDenominator").text)
     most = float(woods.find(WMS + "MaxScaleDenominator").text)
@@ -331,7 +331,7 @@ def _(wms):
 
 @suite("basic:bbox-pixel-interpretation")
 def _(wms):
-    """The box goes around the pixels at the border, and not through their middles."""
+    """The box surrounds the pixels at the border; it does not pass through their centres."""
     picture = wms.map(LAYERS="ponds", BBOX="6.5,46.0,7.0,46.4", WIDTH=10, HEIGHT=8).picture()
     assert colours(picture) == {PONDS}, colours(picture)
     wider = wms.map(LAYERS="ponds", BBOX="6.4,45.9,7.1,46.5", WIDTH=14, HEIGHT=12).picture()
@@ -342,14 +342,14 @@ def _(wms):
 @suite("getmap:bbox-minx-gt-maxx", "getmap:bbox-minx-eq-maxx", "getmap:bbox-miny-gt-maxy",
        "getmap:bbox-miny-eq-maxy")
 def _(wms):
-    """A box without an area is an exception."""
+    """A box without an area gives an exception."""
     for box in ("1,0,0,1", "0,0,0,1", "0,1,1,0", "0,0,1,0"):
         expect_exception(wms.map(BBOX=box))
 
 
 @suite("getmap:bbox-no-overlap", "getmap:bbox-outside-crs")
 def _(wms):
-    """Where there is no layer, and where the system ends, the map is empty."""
+    """Outside the layer and outside the system's extent, the map is empty."""
     for box in ("-180,-90,5,45", "-10,90,10,110"):
         answer = wms.map(BBOX=box)
         expect_picture(answer, wms.png, (100, 100))
@@ -358,7 +358,7 @@ def _(wms):
 
 @suite("basic:no-bgcolor", "basic:blue-bgcolor", "basic:transparent-true")
 def _(wms):
-    """What is not covered is white, or of BGCOLOR, or transparent."""
+    """The background is white, or BGCOLOR, or transparent."""
     for pairs, ground in (({}, WHITE), ({"BGCOLOR": "0x0000FF"}, (0, 0, 255, 255)),
                           ({"TRANSPARENT": "TRUE"}, (0, 0, 0, 0))):
         picture = wms.map(LAYERS="ponds", WIDTH=200, HEIGHT=200, **pairs).picture()
@@ -368,7 +368,7 @@ def _(wms):
 
 @suite("getmap:transparent-default", "getmap:transparent-false")
 def _(wms):
-    """Maps are opaque, unless they are told not to be."""
+    """Maps are opaque, unless TRANSPARENT is set."""
     for value in (None, "FALSE"):
         alphas = wms.map(TRANSPARENT=value).picture().getchannel("A").getextrema()
         assert alphas == (255, 255), (value, alphas)
@@ -376,13 +376,13 @@ def _(wms):
 
 @suite("getmap:transparent-opaque-layer")
 def _(wms):
-    """No layer is said to be opaque."""
+    """No layer is declared opaque."""
     assert all(layer.get("opaque") in (None, "0") for layer in wms.root.iter(WMS + "Layer"))
 
 
 @suite("getmap:invalid-crs")
 def _(wms):
-    """A system that there is not is an exception that says so."""
+    """An unknown system gives an exception that names the cause."""
     expect_exception(wms.map(CRS="CRS:NonExistent"), "InvalidCRS")
     expect_exception(wms.map(LAYERS="woods", CRS="EPSG:3035", BBOX="2000000,4000000,2100000,4100000"),
                      "InvalidCRS")
@@ -390,14 +390,14 @@ def _(wms):
 
 @suite("getmap:exceptions-default", "getmap:exceptions-xml")
 def _(wms):
-    """Exceptions are XML by the schema of the OGC."""
+    """Exceptions are XML, valid against the schema of the OGC."""
     expect_exception(wms.map(LAYERS="NonExistent"))
     expect_exception(wms.map(LAYERS="NonExistent", EXCEPTIONS="XML"))
 
 
 @suite("getmap:exceptions-inimage-mime", "getmap:exceptions-blank-mime", "interactive:exceptions-inimage")
 def _(wms):
-    """Exceptions in a picture have the type that was asked for, and the size; words are in one of them."""
+    """Exceptions in a picture have the requested type and size; one of them contains the message."""
     for kind in wms.map_formats:
         for exceptions in ("INIMAGE", "BLANK"):
             answer = wms.map(LAYERS="NonExistent", EXCEPTIONS=exceptions, FORMAT=kind, WIDTH=300)
@@ -408,7 +408,7 @@ def _(wms):
 
 @suite("getmap:exceptions-blank-red", "getmap:exceptions-blank-transparent")
 def _(wms):
-    """A blank exception is of BGCOLOR, or transparent."""
+    """A blank exception has the colour BGCOLOR, or is transparent."""
     red = wms.map(LAYERS="NonExistent", EXCEPTIONS="BLANK", BGCOLOR="0xFF0000").picture()
     assert colours(red) == {(255, 0, 0, 255)}
     clear = wms.map(LAYERS="NonExistent", EXCEPTIONS="BLANK", TRANSPARENT="TRUE").picture()
@@ -417,7 +417,7 @@ def _(wms):
 
 @suite("getmap:each-format", "getmap:invalid-format")
 def _(wms):
-    """Each format that is offered is sent; others are exceptions."""
+    """Each offered format is sent; other formats give exceptions."""
     for kind in wms.map_formats:
         expect_picture(wms.map(FORMAT=kind), kind, (100, 100))
     expect_exception(wms.map(FORMAT="UnknownFormat"), "InvalidFormat")
@@ -435,14 +435,14 @@ def _(wms):
 
 @suite("getmap:invalid-layer", "getmap:first-layer-invalid", "getmap:second-layer-invalid")
 def _(wms):
-    """A layer that there is not is an exception, wherever it stands."""
+    """An unknown layer gives an exception, at any position in the list."""
     for layers in ("NonExistent", "NonExistent,ponds", "ponds,NonExistent"):
         expect_exception(wms.map(LAYERS=layers), "LayerNotDefined")
 
 
 @suite("getmap:layerlimit")
 def _(wms):
-    """As many layers as the limit says are drawn, and one more is an exception."""
+    """As many layers as the limit allows are drawn; one more gives an exception."""
     limit = int(wms.root.find(f"{WMS}Service/{WMS}LayerLimit").text)
     expect_picture(wms.map(LAYERS=",".join(["ponds"] * limit)), wms.png)
     expect_exception(wms.map(LAYERS=",".join(["ponds"] * (limit + 1))))
@@ -451,7 +451,7 @@ def _(wms):
 @suite("getmap:styles-direct", "getmap:styles-inherited", "getmap:each-style", "getmap:two-styles",
        "getmap:three-styles")
 def _(wms):
-    """Styles are named one for each layer."""
+    """There is one style name for each layer."""
     for style in ("default", "night", "dotted"):
         expect_picture(wms.map(STYLES=style), wms.png, (100, 100))
     assert wms.map(STYLES="night").picture().getpixel((40, 65)) == (0x10, 0x20, 0x40, 255)
@@ -463,7 +463,7 @@ def _(wms):
 @suite("getmap:styles-default-single-layer", "getmap:styles-default-multiple-layers",
        "getmap:styles-default-commas", "getmap:styles-some-default")
 def _(wms):
-    """An empty style is the layer's own, for each layer or for all of them."""
+    """An empty style means the layer's own style, for each layer or for all of them."""
     assert wms.map(STYLES="").body == wms.map(STYLES="default").body
     own = wms.map(LAYERS="woods,ponds,diamond", STYLES="default,default,default").body
     for styles in ("", ",,"):
@@ -474,7 +474,7 @@ def _(wms):
 
 @suite("getmap:invalid-style", "getmap:first-style-invalid", "getmap:second-style-invalid")
 def _(wms):
-    """A style that there is not is an exception, wherever it stands."""
+    """An unknown style gives an exception, at any position in the list."""
     expect_exception(wms.map(STYLES="NonExistent"), "StyleNotDefined")
     for styles in ("NonExistent,default", "default,NonExistent"):
         expect_exception(wms.map(LAYERS="woods,ponds", STYLES=styles), "StyleNotDefined")
@@ -482,7 +482,7 @@ def _(wms):
 
 @suite("getmap:large-size", "getmap:small-size")
 def _(wms):
-    """Pictures are as large as they are asked for, up to what the capabilities say, and no larger."""
+    """Pictures have the requested size, up to the limits in the capabilities and no further."""
     service = wms.root.find(WMS + "Service")
     most = int(service.find(WMS + "MaxWidth").text), int(service.find(WMS + "MaxHeight").text)
     assert most == (774, 774), most
@@ -493,7 +493,7 @@ def _(wms):
 
 @suite("interactive:basic-polygons-sanity-check", "interactive:blue-lake-sanity-check")
 def _(wms):
-    """A diamond that fills the map is one."""
+    """A diamond that fills the map has the right shape."""
     picture = wms.map(LAYERS="diamond", WIDTH=300, HEIGHT=300).picture()
     for at in ((150, 150), (150, 5), (150, 294), (5, 150), (294, 150), (80, 80)):
         assert picture.getpixel(at) == DIAMOND, (at, picture.getpixel(at))
@@ -503,7 +503,7 @@ def _(wms):
 
 @suite("interactive:aspect-ratio")
 def _(wms):
-    """Where box and size do not fit, the map is stretched."""
+    """If box and size do not match, the map is stretched."""
     picture = wms.map(LAYERS="diamond", WIDTH=100, HEIGHT=300).picture()
     for x, y in ((50, 5), (50, 294), (2, 150), (97, 150)):
         assert picture.getpixel((x, y)) == DIAMOND, (x, y)
@@ -512,7 +512,7 @@ def _(wms):
 
 @suite("interactive:fees-and-access-constraints")
 def _(wms):
-    """There are neither fees nor constraints, of which nothing is said."""
+    """There are neither fees nor constraints, and the capabilities do not mention any."""
     assert wms.root.find(f"{WMS}Service/{WMS}Fees") is None
     assert wms.root.find(f"{WMS}Service/{WMS}AccessConstraints") is None
 
@@ -523,7 +523,7 @@ def _(wms):
 @suite("queryable:getfeatureinfo-supported", "queryable:std-data-queryable",
        "getfeatureinfo:query_layers-not-queryable", "getfeatureinfo:each-queryable-layer")
 def _(wms):
-    """Every layer can be asked for its features."""
+    """Features can be requested from every layer."""
     for layer, name in zip(wms.layers, wms.names):
         assert layer.get("queryable") == "1"
         answer = wms.info(LAYERS=name, QUERY_LAYERS=name, INFO_FORMAT="text/plain")
@@ -533,7 +533,7 @@ def _(wms):
 @suite("getfeatureinfo:exceptions-default", "getfeatureinfo:exceptions-xml",
        "getfeatureinfo:invalid-query_layers")
 def _(wms):
-    """What is wrong is told by XML."""
+    """Errors are reported as XML."""
     for exceptions in (None, "XML"):
         expect_exception(wms.info(LAYERS="UndefinedLayer", QUERY_LAYERS="UndefinedLayer",
                                   EXCEPTIONS=exceptions), "LayerNotDefined")
@@ -542,7 +542,7 @@ def _(wms):
 
 @suite("getfeatureinfo:each-info_format", "getfeatureinfo:invalid-info_format")
 def _(wms):
-    """Each format that is offered is sent; others are exceptions."""
+    """Each offered format is sent; other formats give exceptions."""
     for kind in wms.info_formats:
         answer = wms.info(INFO_FORMAT=kind)
         assert answer.status == 200 and answer.type == kind, (kind, answer.type)
@@ -551,7 +551,7 @@ def _(wms):
 
 @suite("getfeatureinfo:invalid-i", "getfeatureinfo:invalid-j")
 def _(wms):
-    """A pixel beyond the map is an exception."""
+    """A pixel outside the map gives an exception."""
     expect_exception(wms.info(I=250), "InvalidPoint")
     expect_exception(wms.info(J=250), "InvalidPoint")
     expect_exception(wms.info(I=-1), "InvalidPoint")
@@ -560,7 +560,7 @@ def _(wms):
 @suite("getfeatureinfo:two-query_layers", "getfeatureinfo:three-query_layers",
        "getfeatureinfo:less-query_layers")
 def _(wms):
-    """Of the layers of a map, some or all are asked for their features."""
+    """Features are requested from some or all layers of a map."""
     for queried in ("ponds,woods", "ponds,woods,diamond", "diamond"):
         answer = wms.info(LAYERS="woods,ponds,diamond", QUERY_LAYERS=queried, INFO_FORMAT="text/plain")
         assert answer.status == 200 and answer.type == "text/plain", answer.type
@@ -570,7 +570,7 @@ def _(wms):
 
 @suite("queryable:feature_count-default", "queryable:feature_count-1")
 def _(wms):
-    """One feature is told of, or as many as are asked for."""
+    """One feature is returned, or as many as requested."""
     def features(count):
         answer = wms.info(INFO_FORMAT="application/geo+json", FEATURE_COUNT=count)
         return len(json.loads(answer.body)["features"])
@@ -584,7 +584,7 @@ def _(wms):
        "recommendations:layer-abstracts", "recommendations:layer-keywordlists",
        "recommendations:metadataurls")
 def _(wms):
-    """Of layers, what the configuration says is told; it has no contact and no keywords."""
+    """The layers have the metadata in the configuration, which has no contact and no keywords."""
     woods = wms.layers[wms.names.index("woods")]
     assert woods.find(WMS + "Title").text == "Woods & meadows"
     assert woods.find(WMS + "Abstract").text == "What is green"
@@ -593,12 +593,12 @@ def _(wms):
         assert wms.root.find(f".//{WMS}{name}") is None, name
 
 
-# Version 1.1.1, of which the standard has document types
+# Version 1.1.1, for which the standard has document types
 
 
 @suite("1.1.1: capabilities and exceptions are valid")
 def _(wms):
-    """Capabilities and exceptions of the version of old are valid by its document types."""
+    """Capabilities and exceptions of version 1.1.1 are valid against its document types."""
     capabilities = wms.capabilities(VERSION="1.1.1")
     assert capabilities.type == "application/vnd.ogc.wms_xml", capabilities.type
     expect_valid(capabilities.body, "wms/1.1.1/WMS_MS_Capabilities.dtd")
@@ -609,7 +609,7 @@ def _(wms):
 
 @suite("schemas refuse what is wrong")
 def _(wms):
-    """Validation finds an element that is not known."""
+    """Validation finds an unknown element."""
     if not has_schemas():
         return
     wrong = wms.document.body.replace(b"<MaxWidth>", b"<MostWidth>").replace(b"</MaxWidth>", b"</MostWidth>")

@@ -1,8 +1,8 @@
-"""WMTS 1.0.0: every assertion of the OGC's test suite about what there is, by the names of its tests: those of
-key-value pairs by GET and of addresses ("RESTful"). There is no POST and no SOAP, which the suite passes over
-then, no dimension, no theme, no update sequence, and no layer without limits of tiles.
+"""WMTS 1.0.0: every assertion of the OGC's test suite about existing features, under the names of its tests: those
+for key-value pairs over GET and for RESTful addresses. There is no POST and no SOAP, which the suite then skips,
+no dimension, no theme, no update sequence, and no layer without tile limits.
 
-The suite writes names of parameters in locators without regard to letters of either case.
+In locators, the suite ignores the case of parameter names.
 """
 
 import json
@@ -23,7 +23,7 @@ suite = Suite("WMTS 1.0.0")
 
 
 class Service:
-    """What the capabilities say, and requests by the addresses that they give."""
+    """The contents of the capabilities, and requests to the URLs in them."""
 
     def __init__(self, base):
         self.base = base
@@ -43,7 +43,7 @@ class Service:
         return ask(with_query(self.prefix("GetCapabilities"), **{**usual, **pairs}))
 
     def tiles(self, layer, set_id):
-        """Of each matrix that the layer has: its element, and a tile in the middle of the limits."""
+        """For each matrix of the layer: its element, and a tile in the middle of the limits."""
         link = next(link for link in self.layers[layer].findall(WMTS + "TileMatrixSetLink")
                     if link.find(WMTS + "TileMatrixSet").text == set_id)
         matrices = {one.find(OWS + "Identifier").text: one
@@ -112,23 +112,23 @@ def expect_capabilities(answer, *sections):
     assert found == list(sections), found
 
 
-# What there is to be told of; nobody has said who provides the service.
+# The sections that exist; no service provider is configured.
 ALL = ("ServiceIdentification", "OperationsMetadata", "Contents")
 
 
-# What operations have in common
+# Shared by all operations
 
 
 @suite("Server.KVP.GET.HTTP.Mandatory 1-2", "Server.RESTful.HTTP.Mandatory 1-2")
 def _(wmts):
-    """A service that does not exist is not found."""
+    """An unknown service is not found."""
     for path in ("not-existent-service", "wmts/not/existent"):
         assert ask(wmts.base + path).status == 404, path
 
 
 @suite("Server.KVP.GET.InvalidQueryString 1-5", "Server.RESTful.InvalidQueryString 1-5")
 def _(wmts):
-    """A query that is none lacks a service."""
+    """An invalid query lacks a service."""
     query = "request~GetCapabilities!service~!'WMTS'version~'1.0.0"
     expect_exception(ask(wmts.prefix("GetCapabilities") + query), "MissingParameterValue", "service")
 
@@ -141,13 +141,13 @@ def _(wmts):
 
 @suite("Server.KVP.GET.InvalidRequest 1-5")
 def _(wmts):
-    """A request that there is not is refused."""
+    """An unknown request is refused."""
     expect_exception(wmts.capabilities(REQUEST="GetBOGUS"), "InvalidParameterValue", "request")
 
 
 @suite("POST is not offered")
 def _(wmts):
-    """There is no POST, by key-value pairs, XML or SOAP."""
+    """There is no POST, with key-value pairs, XML or SOAP."""
     assert wmts.root.find(f".//{OWS}Post") is None
 
 
@@ -159,7 +159,7 @@ def _(wmts):
        "Server.KVP.GET.GetCapabilities.Response.SchemaValid 1-3",
        "Server.RESTful.GetCapabilities.Request.Mandatory 1-3")
 def _(wmts):
-    """The document has all sections, and is valid by the schema; by its address, too."""
+    """The document has all sections and is valid against the schema, also at its RESTful address."""
     expect_capabilities(wmts.document, *ALL)
     address = wmts.root.find(WMTS + "ServiceMetadataURL").get(HREF)
     assert ask(address).body == wmts.document.body
@@ -174,7 +174,7 @@ def _(wmts):
 @suite("Server.KVP.GET.GetCapabilities.Request.AcceptVersions.Valid 1-4",
        "Server.KVP.GET.GetCapabilities.Request.AcceptVersions.Invalid 1-6")
 def _(wmts):
-    """The version has to be among those that are accepted."""
+    """The version must be among the accepted ones."""
     for versions in ("1.0.0", "2.0.0,1.0.0"):
         expect_capabilities(wmts.capabilities(ACCEPTVERSIONS=versions), *ALL)
     for versions in ("2.0.0", "99.99.99,0.0.1"):
@@ -183,7 +183,7 @@ def _(wmts):
 
 @suite("Server.KVP.GET.GetCapabilities.Request.CaseInsensitive.KVP.Names 1-2")
 def _(wmts):
-    """Keys are the same in any case of letters and in any order."""
+    """Keys may be in any case and in any order."""
     prefix = wmts.prefix("GetCapabilities")
     for query in ("REQUEST=GetCapabilities&SERVICE=WMTS&VERSION=1.0.0",
                   "version=1.0.0&service=WMTS&request=GetCapabilities",
@@ -195,7 +195,7 @@ def _(wmts):
          ("All", "ServiceIdentification", "ServiceProvider", "OperationsMetadata", "Contents", "Themes",
           "Multiple")))
 def _(wmts):
-    """Only the sections that are asked for are told, of those that there are."""
+    """Only the requested sections are sent, if they exist."""
     expect_capabilities(wmts.capabilities(SECTIONS="All"), *ALL)
     for name in SECTIONS:
         expect_capabilities(wmts.capabilities(SECTIONS=name), *(s for s in ALL if s == name))
@@ -207,7 +207,7 @@ def _(wmts):
 @suite("Server.KVP.GET.GetCapabilities.Request.Sections.Invalid 1-6",
        "Server.KVP.GET.GetCapabilities.Request.Sections.Missing 1-6")
 def _(wmts):
-    """A section that there is not is refused, and so is none."""
+    """An unknown section is refused, and so is an empty one."""
     expect_exception(wmts.capabilities(SECTIONS="Bogus"), "InvalidParameterValue", "sections")
     expect_exception(wmts.capabilities(SECTIONS=""), "MissingParameterValue", "sections")
 
@@ -224,7 +224,7 @@ def _(wmts):
        "Server.KVP.GET.GetTile.Invalid.SampleDimension.Name",
        "Server.KVP.GET.GetFeatureInfo.Invalid.SampleDimension.Name")
 def _(wmts):
-    """There are no update sequence, dimensions and themes, but layers, all of which have limits."""
+    """There are no update sequence, dimensions and themes; all layers have limits."""
     assert wmts.root.get("updateSequence") is None and wmts.layers
     for name in ("Dimension", "Theme"):
         assert wmts.root.find(f".//{WMTS}{name}") is None, name
@@ -236,7 +236,7 @@ def _(wmts):
 @suite("Server.KVP.GET.GetCapabilities.Request.AcceptFormats 1-2",
        "Server.KVP.GET.GetCapabilities.Response.AdvertisedFormat 1-3")
 def _(wmts):
-    """The document is application/xml, as it says, whatever is accepted."""
+    """The document is application/xml, the only format declared, whatever the client accepts."""
     allowed = wmts.root.findall(f".//{OWS}Operation[@name='GetCapabilities']/{OWS}Parameter"
                                 f"[@name='AcceptFormats']/{OWS}AllowedValues/{OWS}Value")
     assert [value.text for value in allowed] == ["application/xml"]
@@ -255,7 +255,7 @@ def _(wmts):
 @suite("Server.KVP.GET.GetCapabilities.Response.OnlineResource 1-3",
        "Server.KVP.GET.GetCapabilities.Response.Encoding.Constraint 1-3")
 def _(wmts):
-    """Addresses are prefixes for key-value pairs."""
+    """The URLs are prefixes for key-value pairs."""
     gets = list(wmts.root.iter(OWS + "Get"))
     assert len(gets) == 3
     for get in gets:
@@ -270,7 +270,7 @@ def _(wmts):
           "TileMatrix.Identifiers.Unique", "TileMatrixSet.ScaleDenominators.Unique",
           "Layer.TileMatrixSet.Valid")))
 def _(wmts):
-    """Identifiers are not empty, and there is one of each; layers link to sets that there are."""
+    """Identifiers are unique and not empty; layers link to existing sets."""
     def identifiers(elements):
         names = [element.find(OWS + "Identifier").text for element in elements]
         assert all(names) and len(set(names)) == len(names), names
@@ -294,7 +294,7 @@ def _(wmts):
 @suite(*(f"Server.KVP.GET.GetCapabilities.Response.Layer.LegendURL.Correct.{name}" for name in
          ("Resource 1-3", "Format", "Size")))
 def _(wmts):
-    """Legends are pictures of the type, and of the size if one is told."""
+    """Legends are pictures of the declared type, and of the declared size if there is one."""
     legends = list(wmts.contents.iter(WMTS + "LegendURL"))
     assert len(legends) == 3 * len(wmts.layers)
     for legend in legends:
@@ -306,7 +306,7 @@ def _(wmts):
 
 @suite("Server.KVP.GET.GetCapabilities.Response.TileMatrixSet.WellKnownScaleSet")
 def _(wmts):
-    """Sets that are well known have the scales of those, halved from one matrix to the next."""
+    """Well-known sets have their scales, halved from one matrix to the next."""
     first = {"urn:ogc:def:wkss:OGC:1.0:GoogleMapsCompatible": 559082264.0287178,
              "urn:ogc:def:wkss:OGC:1.0:GoogleCRS84Quad": 279541132.0143589}
     known = 0
@@ -328,7 +328,7 @@ def _(wmts):
        "Server.KVP.GET.GetTile.Valid.Tile.Format", "Server.RESTful.GetTile.Valid.Tile.Format 1-12",
        "Server.KVP.GET.GetTile.Valid.Tile.Size", "Server.RESTful.GetTile.Valid.Tile.Size 1-12")
 def _(wmts):
-    """Every layer has tiles in every matrix of every set, by both ways, of the type and the size that is told."""
+    """Every layer has tiles in every matrix of every set, over both interfaces, of the declared type and size."""
     count = 0
     for name, layer in wmts.layers.items():
         assert [element.text for element in layer.findall(WMTS + "Format")] == ["image/png"]
@@ -355,7 +355,7 @@ REQUIRED = ("LAYER", "STYLE", "FORMAT", "TILEMATRIXSET", "TILEMATRIX", "TILEROW"
 
 @suite("Server.KVP.GET.GetTile.Missing", "Server.RESTful.GetTile.Missing")
 def _(wmts):
-    """Nothing that is required may be missing."""
+    """Every required parameter must be present."""
     tile = wmts.some_tile()
     for key in ("SERVICE", "REQUEST", "VERSION") + REQUIRED:
         expect_exception(get_tile(wmts, tile, **{key: None}), "MissingParameterValue", key)
@@ -370,7 +370,7 @@ WRONG = {"LAYER": "bogus", "STYLE": "bogus", "TILEMATRIXSET": "bogus", "TILEMATR
          ("Layer 1-16", "TileMatrixSet 1-16", "TileMatrix 1-14", "Tile.Style")),
        "Server.KVP.GET.GetTile.Invalid.Tile.Format")
 def _(wmts):
-    """What there is not is refused: with 400, and as an address with 404."""
+    """Unknown values are refused: with 400 in a query, with 404 in a path."""
     tile = wmts.some_tile()
     for key, value in {**WRONG, "FORMAT": "image/bogus"}.items():
         expect_exception(get_tile(wmts, tile, **{key: value}), "InvalidParameterValue", key)
@@ -384,7 +384,7 @@ def _(wmts):
 @suite(*(f"Server.{binding}.GetTile.Invalid.Tile.{name}.TileMatrixSetLimits 1-14"
          for binding in ("KVP.GET", "RESTful") for name in ("Row", "Col")))
 def _(wmts):
-    """A tile outside of the limits is out of range."""
+    """A tile outside the limits is out of range."""
     tile = wmts.some_tile()
     first_row, last_row, first_column, last_column = tile.limits
     template = wmts.template("diamond", "tile", "image/png")
@@ -397,7 +397,7 @@ def _(wmts):
 
 @suite("Server.KVP.GET.GetTile.Valid.Tile.Transparency", "Server.RESTful.GetTile.Valid.Tile.Transparency")
 def _(wmts):
-    """Where there is nothing, tiles are transparent."""
+    """Empty tiles are transparent."""
     picture = get_tile(wmts, wmts.some_tile(matrix="5")).picture()
     assert picture.getchannel("A").getextrema() == (0, 255)
 
@@ -408,7 +408,7 @@ def _(wmts):
 @suite("Server.KVP.GET.GetFeatureInfo.Mandatory 1-16", "Server.RESTful.GetFeatureInfo.Mandatory",
        "Server.KVP.GET.GetFeatureInfo.Valid.InfoFormat", "Server.RESTful.GetFeatureInfo.Valid.InfoFormat")
 def _(wmts):
-    """Every layer tells its features in every format, in every set, by both ways."""
+    """Every layer returns its features in every format, in every set, over both interfaces."""
     for name, layer in wmts.layers.items():
         formats = [element.text for element in layer.findall(WMTS + "InfoFormat")]
         assert len(formats) >= 3, formats
@@ -427,7 +427,7 @@ def _(wmts):
 
 @suite("Server.KVP.GET.GetFeatureInfo.Missing", "Server.RESTful.GetFeatureInfo.Missing")
 def _(wmts):
-    """Nothing that is required may be missing."""
+    """Every required parameter must be present."""
     tile = wmts.some_tile()
     for key in ("SERVICE", "REQUEST", "VERSION") + REQUIRED + ("I", "J", "INFOFORMAT"):
         expect_exception(get_info(wmts, tile, **{key: None}), "MissingParameterValue", key)
@@ -439,7 +439,7 @@ def _(wmts):
          ("Layer", "TileMatrixSet", "TileMatrix", "Tile.Style")),
        "Server.KVP.GET.GetFeatureInfo.Invalid.Tile.Format", "Server.KVP.GET.GetFeatureInfo.Invalid.InfoFormat")
 def _(wmts):
-    """What there is not is refused."""
+    """Unknown values are refused."""
     tile = wmts.some_tile()
     for key, value in {**WRONG, "FORMAT": "image/bogus", "INFOFORMAT": "text/bogus"}.items():
         expect_exception(get_info(wmts, tile, **{key: value}), "InvalidParameterValue", key)
@@ -451,7 +451,7 @@ def _(wmts):
 @suite(*(f"Server.{binding}.GetFeatureInfo.Invalid.{name}" for binding in ("KVP.GET", "RESTful") for name in
          ("Tile.Row.TileMatrixSetLimits", "Tile.Col.TileMatrixSetLimits", "Pixel.Row.J", "Pixel.Col.I")))
 def _(wmts):
-    """A tile outside of the limits and a pixel outside of the tile are out of range."""
+    """A tile outside the limits and a pixel outside the tile are out of range."""
     tile = wmts.some_tile()
     template = wmts.template("diamond", "FeatureInfo", "text/plain")
     for name, value in (("TileRow", tile.limits[1] + 1), ("TileCol", tile.limits[3] + 1)):

@@ -1,4 +1,4 @@
-"""Commands that documents show are those of the program: each names a command and options that it has.
+"""Checks the commands in the documents: the program has every command and option that they name.
 
     commands_test.py TRAPEZE"""
 
@@ -9,13 +9,13 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = [ROOT / "README.md", ROOT / "data/README.md", *sorted((ROOT / "docs").glob("*.md"))]
-# At the start of a line of a block of code, after variables of the environment, or after "&&".
+# At the start of a line in a code block, after environment variables, or after "&&".
 COMMAND = re.compile(r"(?:^|&& )(?:[A-Z_]+=\S+ )*(?:build/release/)?trapeze ([^#&|]*)")
 OPTION = re.compile(r"(?<!\S)--[a-z][a-z-]*")
 
 
 def shown_commands():
-    """Lines of blocks of code, and what stands between backticks."""
+    """The lines of code blocks, and the text between backticks."""
     for document in DOCUMENTS:
         text = document.read_text().replace("\\\n", " ")
         pieces = re.findall(r"^    (\S.*)$", text, re.MULTILINE) + re.findall(r"`([^`\n]+)`", text)
@@ -30,7 +30,7 @@ def help_of(program, names):
 
 
 def mistakes_of(program, words, known):
-    """The command may be of two words, as `config check` is; the second is then no file."""
+    """The command may have two words, as `config check`; the second one is then not a file."""
     parts = words.split()
     if not parts or not re.fullmatch(r"[a-z]+", parts[0]):
         return

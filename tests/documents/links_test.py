@@ -1,6 +1,6 @@
-"""What documents lead to is there: files, pictures and headings; and what two of them say is the same.
+"""Checks the links in the documents: files, pictures and headings exist, and repeated figures agree.
 
-    links_test.py [ROOT]        ROOT is the repository if it is not given"""
+    links_test.py [ROOT]        ROOT defaults to the repository"""
 
 import pathlib
 import re
@@ -19,7 +19,7 @@ def documents(root):
 
 
 def prose(text):
-    """Without blocks of code and pieces of it, which hold no links or headings."""
+    """The text without code blocks and inline code, which contain no links or headings."""
     lines, fence = [], None
     for line in text.splitlines():
         found = FENCE.match(line)
@@ -31,7 +31,7 @@ def prose(text):
 
 
 def anchors(path):
-    """Those that hosts of repositories give to headings: lower case, words joined by '-'."""
+    """The anchors that repository hosts generate for headings: lower case, words joined by '-'."""
     found = set()
     in_fence = False
     for line in path.read_text().splitlines():
@@ -65,7 +65,7 @@ def broken_links(root):
 
 
 def lonely_guides(root):
-    """A guide that the README does not lead to is not found."""
+    """Guides that the README does not link to."""
     readme = (root / "README.md").read_text()
     for path in sorted((root / "docs").glob("*.md")):
         if f"(docs/{path.name}" not in readme:
@@ -77,7 +77,7 @@ def rows(text):
 
 
 def differing_figures(root):
-    """Those of the README are rows of the full table."""
+    """Figures in the README that are not rows of the full table."""
     readme = (root / "README.md").read_text()
     table = readme[readme.index("| what | figure | command |"):].split("\n\n")[0]
     for row in sorted(rows(table) - rows((root / "docs/measurements.md").read_text())):

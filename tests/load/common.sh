@@ -1,8 +1,8 @@
-# shellcheck shell=bash disable=SC2034 # its variables are for those who source it
-# What the load tests share: tiles around a place, asking for URLs with curl, and judging the answers.
-# To be sourced.
+# shellcheck shell=bash disable=SC2034 # its variables are for the scripts that source it
+# Functions shared by the load tests: tiles around a place, requests with curl, and checks of the
+# answers. Source this file.
 
-# The variables that all of them take.
+# Variables that all of them accept.
 base=${TRAPEZE_URL:-http://localhost:8080}
 layers=${LAYERS:-countries,water}
 lon=${LON:-8.2}
@@ -30,14 +30,15 @@ tiles() {
   }'
 }
 
-# trip: a map of 5 x 5 tiles that zooms in on the place, every tile once.
+# trip: the tiles of a map of 5 x 5 tiles that zooms in on the place, every tile once.
 trip() {
   local zoom
   for zoom in $zooms; do tiles "$zoom" 2; done
 }
 
-# ask NAME: asks for the URLs on standard input, PARALLEL at once, over connections that are kept; one
-# line for each answer in $work/NAME: code, seconds, bytes, content type, ETag, Retry-After, URL.
+# ask NAME: requests the URLs on standard input, PARALLEL at a time, over persistent connections;
+# writes one line for each answer to $work/NAME: code, seconds, bytes, content type, ETag,
+# Retry-After, URL.
 ask() {
   awk '{ printf "url = \"%s\"\noutput = \"/dev/null\"\n", $0 }' >"$work/$1.curl"
   local begin end
@@ -45,12 +46,12 @@ ask() {
   curl --silent --no-progress-meter --globoff --parallel --parallel-immediate --parallel-max "$parallel" \
     --connect-timeout 5 --max-time 60 \
     --write-out '%{http_code}\t%{time_total}\t%{size_download}\t%{content_type}\t%header{etag}\t%header{retry-after}\t%{url}\n' \
-    --config "$work/$1.curl" >"$work/$1" || true # the codes tell: 000 is no answer
+    --config "$work/$1.curl" >"$work/$1" || true # failures show in the codes: 000 is no answer
   end=$(date +%s.%N)
   echo "$begin $end" >"$work/$1.time"
 }
 
-# report NAME: rate, codes and percentiles.
+# report NAME: prints rate, codes and percentiles.
 report() {
   sort -t $'\t' -k2,2g "$work/$1" | awk -F '\t' -v name="$1" -v clock="$(cat "$work/$1.time")" '
     { ++codes[$1]; bytes += $3; seconds[++n] = $2 }
@@ -64,8 +65,8 @@ report() {
     }'
 }
 
-# judge NAME COUNT [busy]: fails unless there are COUNT answers, all of them pictures, and those of one
-# URL with one ETag and of one size. With "busy", 503 with Retry-After will do as well.
+# judge NAME COUNT [busy]: fails unless there are COUNT answers, all of them pictures, with one ETag
+# and one size for each URL. With "busy", 503 with Retry-After is accepted as well.
 judge() {
   awk -F '\t' -v count="$2" -v busy="${3-}" '
     function wrong(what) { if (++wrongs <= 5) print "wrong: " what ": " $0 }

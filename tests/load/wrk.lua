@@ -1,9 +1,9 @@
--- For wrk: the URLs of a file, each thread from another place on, and what came of them.
+-- For wrk: requests the targets in a file, each thread from another position on, and prints the results.
 --
 --   wrk -t2 -c32 -d10s -s tests/load/wrk.lua http://localhost:8080 -- FILE [REPEATS]
 --
--- FILE holds a target a line ("/tiles/..."). With REPEATS of 0 each target gets a "background" of its
--- own whenever it is asked for, so that no tile is in the cache. Ends with lines "wrk: KEY VALUE".
+-- FILE contains a target a line ("/tiles/..."). If REPEATS is 0, every request gets a "background" of its
+-- own, so that no tile is in the cache. Prints lines "wrk: KEY VALUE" at the end.
 local threads = {}
 
 function setup(thread)

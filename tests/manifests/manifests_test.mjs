@@ -1,8 +1,8 @@
-// The manifests are what Kubernetes takes, and the configuration in them is what Trapeze takes.
+// Kubernetes accepts the manifests, and Trapeze accepts the configuration in them.
 //
 //   TRAPEZE_BINARY=build/dev/trapeze node tests/manifests/manifests_test.mjs
 //
-// Without the packages of script/bootstrap it ends with 77.
+// Without the packages of script/bootstrap it exits with status 77.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -1,8 +1,8 @@
-// The manifests of several servers behind nginx are what Kubernetes takes, and fit nginx's configuration.
+// Kubernetes accepts the manifests of several servers behind nginx, which match nginx's configuration.
 //
 //   TRAPEZE_BINARY=build/dev/trapeze node tests/manifests/replicas_test.mjs
 //
-// Without the packages of script/bootstrap it ends with 77.
+// Without the packages of script/bootstrap it exits with status 77.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import path from 'node:path';

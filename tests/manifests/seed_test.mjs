@@ -1,9 +1,9 @@
-// What seeds on Kubernetes and on Slurm is taken by both, and the commands in it by Trapeze.
+// Kubernetes and Slurm accept the seeding jobs, and Trapeze accepts the commands in them.
 //
 //   TRAPEZE_BINARY=build/dev/trapeze node tests/manifests/seed_test.mjs
 //
-// The commands are run as they are, on a fixture in place of the sample and with a folder in place of the
-// volume. Without the packages of script/bootstrap it ends with 77.
+// The commands run unchanged, with a fixture in place of the sample and a folder in place of the volume.
+// Without the packages of script/bootstrap it exits with status 77.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
@@ -28,7 +28,8 @@ async function validate(manifest) {
   new model[kind](structuredClone(manifest)).validate();
 }
 
-/// A folder with a program `trapeze`, and a configuration of two layers where the image has the sample's.
+/// A folder with a program `trapeze`, and a configuration of two layers in place of the sample's in the
+/// image.
 function workplace() {
   const work = mkdtempSync(path.join(tmpdir(), 'trapeze-'));
   mkdirSync(path.join(work, 'bin'));
@@ -47,7 +48,7 @@ function run(work, command, args, variables) {
   return execFileSync(command, args, { cwd: work, env: { ...process.env, PATH, ...variables }, stdio: 'pipe' });
 }
 
-/// In one go, for comparison.
+/// The archive of a single run, for comparison.
 function whole(work) {
   run(work, 'trapeze', [...seeding, '--output', 'whole.pmtiles']);
   return readFileSync(path.join(work, 'whole.pmtiles'));
@@ -62,7 +63,7 @@ function withWorkplace(action) {
   }
 }
 
-/// What the program writes.
+/// The job that the program generates.
 const written = (system, ...more) =>
   execFileSync(binary, [...seeding, '--output', 'world.pmtiles', '--parts', '8', '--jobs', system, ...more], { encoding: 'utf8' });
 

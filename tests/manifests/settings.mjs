@@ -1,11 +1,12 @@
-// What the program under test, which TRAPEZE_BINARY names, takes a configuration for.
+// How the program under test, named by TRAPEZE_BINARY, interprets a configuration.
 import { execFileSync } from 'node:child_process';
 
 const program = process.env.TRAPEZE_BINARY;
 
 /**
- * The settings as they are printed, of a file and of the variables of an environment. Throws what
- * is wrong with one, in words; what it names (data, the viewer) need not be on this machine.
+ * The settings as the program prints them, from a file and environment variables. Throws the
+ * program's message if a setting is wrong; the files and folders that it names (data, the viewer)
+ * need not exist on this machine.
  */
 export function printedSettings({ file, environment = {} }) {
   const options = file ? ['--config', file] : [];
@@ -15,7 +16,7 @@ export function printedSettings({ file, environment = {} }) {
   });
 }
 
-/** How long a server goes on when it is told to end, at most. */
+/** The longest time that a server takes to shut down. */
 export function drainMilliseconds(printed) {
   const milliseconds = (key) => Number(printed.match(new RegExp(`^${key} = (\\d+)`, 'm'))[1]);
   return milliseconds('drain_delay_ms') + milliseconds('drain_timeout_ms');

@@ -1,8 +1,10 @@
-// The unit is what systemd takes, shuts the server in, and gives it the time that it needs to end.
+// systemd accepts the unit, and the unit confines the server and gives it the time that it needs to
+// shut down.
 //
 //   TRAPEZE_BINARY=build/dev/trapeze node tests/manifests/unit_test.mjs
 //
-// Nothing is started, and systemd need not be running. Without systemd-analyze it ends with 77.
+// Nothing is started, and systemd need not be running. Without systemd-analyze it exits with status
+// 77.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -15,7 +17,7 @@ import { drainMilliseconds, printedSettings } from './settings.mjs';
 
 const config = path.join(path.dirname(fileURLToPath(import.meta.url)), '../../config');
 
-// Before 250 it cannot judge a unit that is not installed.
+// Before version 250, it cannot analyse a unit that is not installed.
 const { stdout: about } = spawnSync('systemd-analyze', ['--version'], { encoding: 'utf8' });
 if (!(about?.match(/^systemd (\d+)/)?.[1] >= 250)) {
   console.log('skipped: there is no systemd-analyze of systemd 250 or later');
@@ -25,22 +27,22 @@ if (!(about?.match(/^systemd (\d+)/)?.[1] >= 250)) {
 const work = mkdtempSync(path.join(tmpdir(), 'trapeze-'));
 after(() => rmSync(work, { recursive: true }));
 
-// The program is where it was built.
+// The program at its place in the build folder.
 const unit = readFileSync(path.join(config, 'trapeze.service'), 'utf8').replaceAll(
   '/usr/local/bin/trapeze',
   path.resolve(process.env.TRAPEZE_BINARY),
 );
 
-/** What is wrong with a unit, in words; nothing if nothing is. */
+/** The problems of a unit as text; empty if there are none. */
 function analyze(text, ...command) {
   const file = path.join(work, 'trapeze.service');
   writeFileSync(file, text);
   const { status, stdout, stderr } = spawnSync('systemd-analyze', [...command, file], { encoding: 'utf8' });
   return `${stderr}${status === 0 ? '' : `${stdout}ended with ${status}`}`;
 }
-// Other units of this machine may be wrong: not ours to say.
+// Problems of other units on this machine are ignored.
 const verify = (text) => analyze(text, 'verify', '--man=no', '--recursive-errors=no');
-// 20 is 2.0 of 10, which is no exposure at all to fully exposed.
+// 20 means 2.0 of 10, where 0 is no exposure and 10 is fully exposed.
 const judge = (text) => analyze(text, 'security', '--offline=true', '--threshold=20');
 
 test('systemd takes the unit', () => assert.equal(verify(unit), ''));

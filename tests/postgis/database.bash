@@ -1,12 +1,12 @@
-# A PostgreSQL with PostGIS in a new folder, $work, which goes with all that is in it when the script that sources this
-# ends, and so does $server; sourced by tests and benchmarks. Without what it needs (postgresql-15,
-# postgresql-15-postgis-3, curl) the script ends with 77.
+# Starts a PostgreSQL with PostGIS in a new folder, $work. Sourced by tests and benchmarks; when the sourcing script
+# ends, $work is removed and $server is stopped. If a requirement is missing (postgresql-15, postgresql-15-postgis-3,
+# curl), the script exits with status 77.
 
 missing() {
   echo "skipped: there is no $1"
   exit 77
 }
-for bin in /usr/lib/postgresql/*/bin; do :; done # the last one
+for bin in /usr/lib/postgresql/*/bin; do :; done # selects the last one
 [[ -x $bin/initdb ]] || missing PostgreSQL
 compgen -G '/usr/share/postgresql/*/extension/postgis.control' >/dev/null || missing PostGIS
 for program in curl setpriv; do
@@ -53,7 +53,7 @@ start_anywhere() {
   fail "PostgreSQL does not start: $(tail -3 "$work/data/log")"
 }
 
-# The database "maps" with the schema "atlas"; $connection leads there, but for the password.
+# The database "maps" with the schema "atlas"; $connection connects to it, but lacks the password.
 make_database() {
   export PGPASSWORD="drop'let 7"
   ((EUID != 0)) || chown postgres "$work"
@@ -73,8 +73,9 @@ sql() {
     --dbname maps --tuples-only --no-align --command "$1"
 }
 
-# make_parcels BLOCKS: the table atlas.parcels, whose changes are noted in atlas.changes, and the view atlas.in_order of
-# it. Blocks of 6 x 4 parcels, streets between them; neighbours share borders, which are not straight.
+# make_parcels BLOCKS: creates the table atlas.parcels, whose changes are recorded in atlas.changes, and the view
+# atlas.in_order of it. Blocks of 6 x 4 parcels with streets between them; neighbours share borders, which are not
+# straight.
 make_parcels() {
   local columns
   columns=$(awk -v blocks="$1" 'BEGIN { print int(sqrt(blocks)) }')
@@ -91,7 +92,7 @@ make_parcels() {
            FROM generate_series(0, 16) k ORDER BY k))), 4326)
        FROM (SELECT i, i / 24 AS block, i % 24 % 6 AS x, i % 24 / 6 AS y FROM generate_series(0, '"$((24 * $1 - 1))"') i) AS places;
        CREATE VIEW atlas.in_order AS SELECT * FROM atlas.parcels ORDER BY number;'
-  # What docs/operating.md recommends.
+  # As docs/operating.md recommends.
   sql 'CREATE TABLE atlas.changes (xid xid8 NOT NULL DEFAULT pg_current_xact_id(), id bigint NOT NULL);
        CREATE INDEX ON atlas.changes (xid);
        CREATE FUNCTION atlas.note_change() RETURNS trigger LANGUAGE plpgsql AS $$
@@ -104,7 +105,7 @@ make_parcels() {
          FOR EACH ROW EXECUTE FUNCTION atlas.note_change();'
 }
 
-# until_true WHAT COMMAND...: waits for half a minute, or most_tries times a tenth of a second.
+# until_true WHAT COMMAND...: waits for half a minute, or for most_tries tenths of a second.
 until_true() {
   local what=$1 try
   shift
@@ -118,7 +119,7 @@ until_true() {
 is_ready() { curl --silent --fail --output /dev/null "$url/ready"; }
 port_of_server() { port_told=$(sed -n 's/.*listening on 127.0.0.1 port \([0-9]*\).*/\1/p' "$work/trapeze.log" | head -1); [[ -n $port_told ]]; }
 
-# The server that logs to $work/trapeze.log; its address is $url then.
+# Waits for the server that logs to $work/trapeze.log, and sets $url to its address.
 wait_for_server() {
   url=
   until_true "the server does not listen" port_of_server

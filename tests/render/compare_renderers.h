@@ -1,4 +1,4 @@
-// How far two renderers, or two pictures, are apart.
+// Measures the difference between two renderers or two pictures.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace trapeze::testing {
 
-/// Pixels by the difference of their values.
+/// Counts of pixels by the difference between their values.
 struct Difference {
   std::size_t pixels = 0;
   std::size_t above_1 = 0;  // pixels that differ by more than 1/255
@@ -22,7 +22,7 @@ struct Difference {
 };
 std::ostream& operator<<(std::ostream& out, const Difference& difference);
 
-/// The two are of one size.
+/// The two masks must have the same size.
 Difference compare_masks(const Mask& expected, const Mask& actual);
 
 Difference compare_renderers(MaskRenderer& expected, MaskRenderer& actual, const MeshView& mesh,

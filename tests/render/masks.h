@@ -1,4 +1,4 @@
-// Masks by their pixels, for tests.
+// Builds masks from pixels and reads their pixels, for tests.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace trapeze::testing {
 
-/// By value_at(column, row).
+/// A mask whose pixels are value_at(column, row).
 template <typename ValueAt>
 Mask mask_by(int width, int height, const ValueAt& value_at) {
   Mask mask;

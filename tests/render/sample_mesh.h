@@ -1,4 +1,4 @@
-// Meshes for tests of renderers, made by hand or by chance, with what is known about them.
+// Meshes for tests of renderers, made by hand or at random, with known properties.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,22 @@
 
 namespace trapeze::testing {
 
-/// A mesh that owns its arrays. Every one has an id of its own.
+/// A mesh that owns its arrays. Every mesh has its own id.
 class SampleMesh {
  public:
   SampleMesh();
 
   std::uint32_t add_vertex(std::int32_t x, std::int32_t y);
   std::uint32_t add_edge(Point upper, Point lower);
-  /// The region between two edges from one y to another.
+  /// Adds the region between two edges from one y to another.
   void add(std::uint32_t left, std::uint32_t right, std::int32_t top, std::int32_t bottom);
-  /// A rectangle of cells.
+  /// Adds a rectangle, in cells.
   void add_box(std::int32_t min_x, std::int32_t min_y, std::int32_t max_x, std::int32_t max_y);
 
   MeshView view() const { return {id_, vertices_, edges_, trapezoids_}; }
   TrapezoidRange all() const { return {0, static_cast<std::uint32_t>(trapezoids_.size())}; }
   std::size_t size() const { return trapezoids_.size(); }
-  /// The sum of the areas of all trapezoids, in cells squared.
+  /// The sum of the areas of all trapezoids, in square cells.
   long double area() const;
 
  private:
@@ -34,14 +34,14 @@ class SampleMesh {
   std::vector<MeshTrapezoid> trapezoids_;
 };
 
-/// x of an edge at a height, computed in the widest floating type there is.
+/// The x of an edge at a height, computed in the widest floating-point type.
 long double x_at(const MeshView& mesh, std::uint32_t edge, long double y);
 
 /// About `count` disjoint trapezoids that fill about half of the box: between edges from its top to
-/// its bottom that do not cross, cut at random heights. Many are slivers, some have no area.
+/// its bottom that do not cross, cut at random heights. Many are slivers; some have no area.
 SampleMesh random_strips(std::mt19937& random, const Box& box, int count);
 
-/// `count` disjoint trapezoids, each alone in a field of a chessboard that covers the box.
+/// `count` disjoint trapezoids, each alone in a square of a chessboard that covers the box.
 SampleMesh random_scatter(std::mt19937& random, const Box& box, int count);
 
 }  // namespace trapeze::testing

@@ -1,6 +1,6 @@
-"""Tiles of an archive have the bytes that a server answers with.
+"""Checks that tiles of an archive have the bytes that a server answers with.
 
-    compare.py ARCHIVE.mbtiles URL STYLE COUNT      by chance, half of them among those that differ from others"""
+    compare.py ARCHIVE.mbtiles URL STYLE COUNT      COUNT random tiles, half of them with unique content"""
 
 import random
 import sqlite3

@@ -1,6 +1,6 @@
-"""The folders of the source know each other in one direction, and no two files in a circle.
+"""The source folders depend on each other in one direction only, and no files include each other in a cycle.
 
-Each folder may include from itself and from those above it in the list."""
+Each folder may include from itself and from the folders above it in the list."""
 
 import pathlib
 import re
@@ -23,7 +23,7 @@ def included_by(path):
 
 
 def units():
-    """Headers and their sources together, by the name without an ending, with what they include."""
+    """Headers together with their sources, by name without extension, with the units that they include."""
     found = {}
     for top in ("core", "render", "server"):
         for path in sorted((ROOT / top).rglob("*")):
@@ -47,7 +47,7 @@ def rooms_out_of_order(graph):
 
 
 def circles(graph):
-    """A path back to where it began for every file that has one."""
+    """For every file in a cycle, a path back to it."""
     done = set()
 
     def visit(unit, path):

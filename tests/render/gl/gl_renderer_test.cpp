@@ -29,7 +29,7 @@ using testing::random_scatter;
 using testing::random_strips;
 using testing::SampleMesh;
 
-// Every way to a context is a test of its own.
+// Runs every test once for each way to create a context.
 class GlRendererTest : public ::testing::TestWithParam<ContextPath> {
  protected:
   void SetUp() override {
@@ -120,7 +120,7 @@ TEST_P(GlRendererTest, TakesAreaAwayLikeTheReferenceWhereEdgesHaveChangedPlaces)
   const std::int32_t step = (box.max_x - box.min_x) / 32;
   SampleMesh mesh;
   mesh.add_box(box.min_x, box.min_y, box.max_x, box.max_y);
-  // Holes of every part of a pixel, up to and across all borders of the picture.
+  // Holes that cover every fraction of a pixel, up to and across all borders of the picture.
   for (int row = -1; row <= 32; ++row) {
     for (int column = -1; column <= 32; ++column) {
       const std::int32_t west = box.min_x + column * step + row;
@@ -143,7 +143,7 @@ TEST_P(GlRendererTest, DrawsTrapezoidsFarLargerThanThePictureLikeTheReference) {
   for (const int zoom : {1, 4, 8, 12, 16, 20, 22}) {
     for (int i = 0; i < 5; ++i) {
       const SampleMesh mesh = random_strips(random, world, 5000);
-      // Tiles where something happens: around the end of an edge.
+      // Tiles with visible content: around the end of an edge.
       const Point place = mesh.view().vertices[random() % mesh.view().vertices.size()];
       View view = View::of_tile({zoom, 0, 0});
       view.origin_x = place.x - static_cast<std::int64_t>(100 * view.cells_per_pixel);
@@ -157,12 +157,13 @@ TEST_P(GlRendererTest, PlacesLongEdgesOfAllSlopesLikeTheReference) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  // Lines through a point near the middle of a tile of zoom 22, at all angles, from near and far.
+  // Lines through a point near the middle of a tile of zoom 22, at all angles, with ends near and
+  // far.
   const View view{1'000'000'000, -700'000'000, 2, 256, 256};
   for (const double reach : {1e2, 1e4, 1e6, 7e7}) {
     for (int i = 0; i < 40; ++i) {
       const double angle = std::uniform_real_distribution<double>(1e-9, M_PI - 1e-9)(random);
-      const double flat = i % 4 == 0 ? 1e-5 : 1;  // every fourth is nearly horizontal
+      const double flat = i % 4 == 0 ? 1e-5 : 1;  // one line in four is nearly horizontal
       const double dx = reach * std::cos(angle);
       const double dy = reach * std::sin(angle) * flat + 1;
       const auto at = [&](double share) {
@@ -241,7 +242,7 @@ TEST_P(GlRendererTest, SumsTensOfThousandsOfTrapezoidsInAPixelLikeTheReference) 
   }
 }
 
-// More than 32 bits would hold if all were summed up before any are read back.
+// Would overflow 32 bits if everything were summed up before anything is read back.
 TEST_P(GlRendererTest, StacksTensOfThousandsOfTrapezoids) {
   SampleMesh mesh;
   for (int i = 0; i < 40'000; ++i) mesh.add_box(3, 2, 9, 13);
@@ -285,7 +286,7 @@ TEST_P(GlRendererTest, DrawsTheSameBytesWhereverInTheMesh) {
   EXPECT_FALSE(expected.is_all(0));
 }
 
-// Three pictures, the second one of more pixels than are drawn in one pass.
+// Three pictures; the second has more pixels than one pass draws.
 TEST_P(GlRendererTest, DrawsSeveralAndLargePicturesLikeTheReference) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -329,7 +330,8 @@ TEST_P(GlRendererTest, IgnoresTrapezoidsWithoutHeightOrOutsideOfThePicture) {
 }
 
 TEST_P(GlRendererTest, DrawsAcrossChunksOfALargeMesh) {
-  // Rows of unit boxes, enough for two chunks; every range but a few crosses something.
+  // Rows of unit boxes, enough for two chunks; nearly every range crosses a border of a row or
+  // chunk.
   constexpr int kWidth = 1024;
   constexpr int kHeight = 300;
   SampleMesh mesh;
@@ -394,7 +396,7 @@ TEST_P(GlRendererTest, TwoThreadsDrawTheSameBytesAsOne) {
   for (std::size_t i = 0; i < expected.size(); ++i) draw(renderer(), i, expected[i]);
   for (const SampleMesh& mesh : meshes) renderer().forget(mesh.view().id);
 
-  // Uploads race here, too; one thread forgets what the other is using now and then.
+  // Uploads race here, too: from time to time one thread forgets a mesh that the other is using.
   std::atomic<int> wrong = 0;
   std::vector<std::thread> threads;
   for (auto& with : renderers_) {
@@ -430,7 +432,7 @@ TEST_P(GlRendererTest, DrawsAgainAfterItsMemoryWasReleased) {
   const TrapezoidRange all = mesh.all();
   Mask mask;
   for (int i = 0; i < 3; ++i) {
-    for (const auto& renderer : renderers_) {  // the first one uploads what all draw
+    for (const auto& renderer : renderers_) {  // the first one uploads for all
       renderer->draw(mesh.view(), {&all, 1}, {0, 0, 1, 8, 8}, mask);
       EXPECT_TRUE(mask.is_all(255));
     }
@@ -467,7 +469,7 @@ TEST_P(GlRendererTest, KeepsDrawingAfterAnImpossibleRequest) {
   Mask mask;
   EXPECT_THROW(renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, -8, 8}, mask),
                std::invalid_argument);
-  for (int side = 1; side < 12; ++side) {  // more sizes than targets are kept
+  for (int side = 1; side < 12; ++side) {  // more sizes than there are cached targets
     renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, side, side}, mask);
     EXPECT_EQ(mask.at(0, 0), 255);
   }

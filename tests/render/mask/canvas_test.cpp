@@ -29,7 +29,7 @@ TEST(CanvasTest, HasWhatWasWrittenAndNothingOfTheMasksBefore) {
           values[k] = expected[static_cast<std::size_t>(row * width + k)] = value;
         }
       }
-      if (round == 3) continue;  // what is not finished is dropped
+      if (round == 3) continue;  // an unfinished mask is dropped
       Mask mask;
       canvas.finish(mask);
       ASSERT_EQ(testing::values_of(mask), expected) << width;

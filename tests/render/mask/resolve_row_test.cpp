@@ -13,7 +13,7 @@
 namespace trapeze {
 namespace {
 
-// Differences in a few places.
+// Non-zero differences in a few places.
 std::vector<std::int32_t> random_differences(std::mt19937& random, std::size_t columns) {
   std::vector<std::int32_t> differences(columns, 0);
   for (std::size_t i = 0; i < columns; i += 1 + random() % 40) {

@@ -65,7 +65,7 @@ TEST(RowBitsTest, RunsOfBitsAreFoundAcrossWords) {
   const std::vector<std::pair<std::size_t, std::size_t>> runs{
       {0, 1}, {3, 64}, {65, 193}, {199, 200}};
   for (const auto& [begin, end] : runs) set_bits(begin, end, bits);
-  set_bits(210, 220, bits);  // beyond those asked for
+  set_bits(210, 220, bits);  // beyond the requested length
   std::vector<std::pair<std::size_t, std::size_t>> found;
   for_each_run_of_bits(bits, 200,
                        [&](std::size_t begin, std::size_t end) { found.emplace_back(begin, end); });

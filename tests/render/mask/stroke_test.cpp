@@ -13,7 +13,7 @@
 namespace trapeze {
 namespace {
 
-// A pixel is 1024 cells, so that points can be given in fractions of pixels.
+// A pixel is 1024 cells, so that vertices can be given in fractions of pixels.
 constexpr int kCells = 1024;
 constexpr int kSide = 100;  // pixels
 
@@ -41,7 +41,7 @@ Mask draw_edges(const std::vector<PixelPoint>& points, std::vector<OutlineEdge> 
   return mask;
 }
 
-/// A ring, with lengths along it.
+/// Draws a ring with the length along it at every vertex.
 Mask draw_ring(const std::vector<PixelPoint>& points, const Stroke& stroke, int scale = 1) {
   std::vector<OutlineEdge> edges;
   double along = 0;
@@ -75,7 +75,7 @@ TEST(StrokeTest, ALineIsAsWideAsSaid) {
 }
 
 TEST(StrokeTest, CornersAreNoDarkerThanTheRest) {
-  // The middle of a thin line lies at half its width everywhere, at the corners too.
+  // Along the middle of a thin line the opacity is half everywhere, also at the corners.
   const Mask thin = draw_ring({{20.5, 20.5}, {70.5, 20.5}, {70.5, 70.5}, {20.5, 70.5}},
                               {0.5, {}, LineJoin::round});
   int highest = 0;
@@ -90,7 +90,7 @@ TEST(StrokeTest, JoinsDifferInTheCornerOnly) {
   const Mask miter = square(LineJoin::miter);
   const Mask bevel = square(LineJoin::bevel);
   const Mask round = square(LineJoin::round);
-  // Of the corner's square of 4 x 4: all, half, and a quarter of a circle.
+  // Covered part of the 4 x 4 square at a corner: all of it, half, and a quarter of a circle.
   const double sides = 4 * 50 * 8 - 4 * 16;
   EXPECT_NEAR(area(miter), sides + 4 * 16, 2);
   EXPECT_NEAR(area(bevel), sides + 4 * 8, 4);
@@ -119,7 +119,7 @@ TEST(StrokeTest, DashesHaveTheirLengths) {
   const Mask dashed = draw_ring(kSquare, {2, {6, 4}, LineJoin::bevel});
   const Mask solid = draw_ring(kSquare, {2, {}, LineJoin::bevel});
   EXPECT_NEAR(area(dashed) / area(solid), 0.6, 0.02);
-  // 50 pixels are five dashes of six with gaps of four: from 20 on, on every side.
+  // A side of 50 pixels holds five dashes of six pixels with gaps of four, starting at 20.
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(dashed.at(20 + 10 * i + 3, 20), 255) << i;
     EXPECT_EQ(dashed.at(20 + 10 * i + 8, 20), 0) << i;
@@ -211,7 +211,7 @@ TEST(StrokeTest, MasksNarrowerThanABlockAreDrawnToo) {
 
 TEST(StrokeTest, NothingIsLeftOpenBetweenManySmallEdges) {
   std::vector<PixelPoint> circle;
-  for (int i = 0; i < 700; ++i) {  // edges of a third of a pixel
+  for (int i = 0; i < 700; ++i) {  // edges a third of a pixel long
     const double angle = 2 * M_PI * i / 700;
     circle.push_back({50 + 40 * std::cos(angle), 50 + 40 * std::sin(angle)});
   }
@@ -249,11 +249,10 @@ TEST(StrokeTest, DashesTooFineToBeSeenAreATint) {
   }
 }
 
-// Outlines of so many edges that they are not drawn one by one.
+// Outlines with so many edges that they are not drawn one by one.
 class CrowdTest : public ::testing::Test {
  protected:
-  /// A rough coast around the middle, all of it within four pixels of a circle: edges of about a
-  /// fifth of a pixel.
+  /// A rough coast around the middle, within two pixels of a circle, with short edges.
   void add_coast(unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> roughness(-2, 2);
@@ -279,7 +278,7 @@ class CrowdTest : public ::testing::Test {
     return mask;
   }
 
-  /// The distance of a place from the nearest edge, in pixels.
+  /// The distance from a place to the nearest edge, in pixels.
   double distance(double x, double y) const {
     double least = 1e9;
     for (const OutlineEdge& edge : edges_) {

@@ -38,7 +38,7 @@ Mask random_mask(std::mt19937& random, int width, int height) {
   return mask_of(width, height, values);
 }
 
-// One channel of "source over", straight from its definition, in double.
+// One pixel of "source over", computed in double directly from its definition.
 struct Channels {
   double r, g, b, a;
 };
@@ -51,7 +51,7 @@ Channels blend(const Channels& below, Rgba fill, int value) {
   return {mix(fill.r, below.r), mix(fill.g, below.g), mix(fill.b, below.b), sum};
 }
 
-// The colour of a nearly transparent pixel is rounded as any other, but divided by its opacity.
+// The colour of a nearly transparent pixel is rounded like any other, but divided by its opacity.
 void expect_near(Rgba actual, const Channels& expected) {
   EXPECT_NEAR(actual.a, expected.a * 255, 0.51);
   if (actual.a == 0) return;
@@ -124,8 +124,8 @@ TEST(ComposeTest, IsSourceOverToTheLastDigit) {
   }
 }
 
-// A layer of several classes has all layers mixed pixel by pixel, be there nothing to be seen of
-// it; without one, several mixtures are computed at once.
+// If a layer has several classes, all layers are mixed pixel by pixel, even where the layer is
+// invisible; without such a layer, several mixtures are computed at the same time.
 TEST(ComposeTest, ColoursAreTheSameOneByOneAndSeveralAtOnce) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -181,7 +181,7 @@ Picture compose(const PaintedLayer& layer, int width, int height, Rgba backgroun
 TEST(ComposeTest, ClassesOfOneLayerLeaveNoLineBetweenThem) {
   const Mask west = mask_of(4, 1, {255, 100, 64, 1});
   const Mask east = mask_of(4, 1, {0, 155, 64, 254});
-  const Mask rest = mask_of(4, 1, {0, 0, 126, 0});  // of three, rounded down
+  const Mask rest = mask_of(4, 1, {0, 0, 126, 0});  // a third class, rounded down
   const std::vector<PaintedClass> alike{
       {&west, {9, 8, 7, 255}}, {&east, {9, 8, 7, 255}}, {&rest, {9, 8, 7, 255}}};
   const Picture one = compose({.classes = alike}, 4, 1);
@@ -236,7 +236,7 @@ TEST(ComposeTest, OpacityIsOfTheLayerAsAWhole) {
   const PaintedClass lines{&line, {100, 0, 0, 255}};
   const PaintedLayer layer{{&fills, 1}, nullptr, {}, {&lines, 1}, 0.5};
   const Picture picture = compose(layer, 16, 1, {0, 0, 0, 255});
-  EXPECT_EQ(picture.at(3, 0), (Rgba{50, 0, 0, 255}));  // not a bit of the fill shows through
+  EXPECT_EQ(picture.at(3, 0), (Rgba{50, 0, 0, 255}));  // none of the fill shows through
   EXPECT_EQ(picture.at(9, 0), (Rgba{0, 0, 100, 255}));
   EXPECT_EQ(picture.at(15, 0), (Rgba{50, 0, 0, 255}));
   EXPECT_EQ(compose(layer, 16, 1).at(3, 0), (Rgba{100, 0, 0, 128}));
@@ -252,8 +252,8 @@ TEST(ComposeTest, ALayerThatCoversEverythingLiesOverAllOfThePicture) {
   EXPECT_EQ(picture.at(8, 0), (Rgba{0, 200, 0, 255}));
 }
 
-// Along their border, colours go from one to the other in even steps; nothing of the background
-// shows.
+// Along their border, colours change from one to the other in even steps, and the background does
+// not show.
 TEST(ComposeTest, ClassesThatMeetDoSoInFewColours) {
   const Mask west = testing::mask_by(256, 1, [](int column, int) { return 255 - column; });
   const Mask east = testing::mask_by(256, 1, [](int column, int) { return column; });
@@ -270,7 +270,7 @@ TEST(ComposeTest, ClassesThatMeetDoSoInFewColours) {
   }
 }
 
-// More masks than a key holds take another way.
+// With more masks than a key can hold, another code path is used.
 TEST(ComposeTest, ManyClassesAreMixedAsFewAre) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);

@@ -22,7 +22,7 @@ using testing::SampleMesh;
 
 constexpr Rgba kWhite{255, 255, 255, 255};
 constexpr Rgba kBlack{0, 0, 0, 255};
-constexpr int kCells = 16;  // of a pixel, in the views below
+constexpr int kCells = 16;  // cells in a pixel of the views below
 
 Picture white_picture(int width, int height) {
   Picture picture;
@@ -41,7 +41,7 @@ double ink(const Picture& picture, int column, int row) {
   return 1 - picture.at(column, row).r / 255.0;
 }
 
-/// '#' for black, '.' for white, '+' for what lies between.
+/// '#' for black, '.' for white, '+' for anything in between.
 std::vector<std::string> drawing(const Picture& picture) {
   std::vector<std::string> rows;
   for (int row = 0; row < picture.height; ++row) {
@@ -73,7 +73,7 @@ TEST(DebugMarksTest, TheSidesOfATrapezoidAreDrawn) {
 TEST(DebugMarksTest, ALineBetweenTwoPixelsIsSharedByThem) {
   Picture picture = white_picture(4, 4);
   SampleMesh mesh;
-  // Only its west side is in the picture, on the border of columns 1 and 2.
+  // Only its west side is in the picture, on the border between columns 1 and 2.
   mesh.add_box(2 * kCells, -1000, 1000, 1000);
   const TrapezoidRange all = mesh.all();
   mark_mesh(mesh.view(), {&all, 1}, view_of(picture), kBlack, picture);
@@ -161,7 +161,7 @@ TEST(DebugMarksTest, NothingIsDrawnBesideThePictureHoweverLargeTheTrapezoids) {
 TEST(DebugMarksTest, EveryEndOfAnEdgeIsMarkedAndNoImpliedCorner) {
   Picture picture = white_picture(12, 12);
   SampleMesh mesh;
-  // Both sides reach beyond top and bottom: the corners at rows 4 and 8 are no vertices.
+  // Both sides extend beyond the top and the bottom: the corners at rows 4 and 8 are not vertices.
   const auto left = mesh.add_edge({2 * kCells + 8, 8}, {2 * kCells + 8, 10 * kCells + 8});
   const auto right = mesh.add_edge({9 * kCells + 8, 8}, {9 * kCells + 8, 10 * kCells + 8});
   mesh.add(left, right, 4 * kCells + 8, 8 * kCells + 8);
@@ -183,7 +183,7 @@ TEST(DebugMarksTest, EveryEndOfAnEdgeIsMarkedAndNoImpliedCorner) {
 
 constexpr auto kByNumber = [](std::uint32_t trapezoid) { return trapezoid; };
 
-/// The tint of a feature over white.
+/// The tint of a feature on white.
 Rgba tint_on_white(std::uint32_t feature) {
   Picture picture = white_picture(1, 1);
   SampleMesh mesh;
@@ -210,7 +210,7 @@ TEST(DebugMarksTest, FeaturesWhoseNumbersAreCloseHaveTintsThatAreNot) {
 TEST(DebugMarksTest, FacesAreTintedByTheAreaThatTheyCover) {
   Picture picture = white_picture(6, 4);
   SampleMesh mesh;
-  mesh.add_box(kCells, kCells, 3 * kCells + 4, 3 * kCells);  // a quarter of the fourth column
+  mesh.add_box(kCells, kCells, 3 * kCells + 4, 3 * kCells);  // up to a quarter of the fourth column
   mesh.add_box(3 * kCells + 4, kCells, 5 * kCells, 3 * kCells);
   const TrapezoidRange all = mesh.all();
   mark_faces(mesh.view(), {&all, 1}, kByNumber, view_of(picture), picture);
@@ -232,7 +232,7 @@ TEST(DebugMarksTest, FacesThatFillAPictureLeaveNothingUntintedBetweenThem) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  // Two on either side of a line that is anywhere, with a tint for both.
+  // Two fields on either side of a line at a random place, with a tint for both.
   for (int i = 0; i < 20; ++i) {
     Picture picture = white_picture(16, 16);
     const auto somewhere = [&random] { return static_cast<std::int32_t>(random() % 256); };
@@ -267,8 +267,7 @@ class ThreeFields {
  public:
   MeshView mesh() const { return {1, vertices_, edges_, trapezoids_}; }
 
-  /// What is marked as junctions if only those of the trapezoids are there whose field is one of
-  /// `fields`.
+  /// The marked junctions if only the trapezoids of the fields in `fields` are drawn.
   Rows junctions(const std::string& fields) const {
     std::vector<TrapezoidRange> ranges;
     std::vector<TrapezoidRange> horizontal_edges;
@@ -292,7 +291,7 @@ class ThreeFields {
   const std::vector<MeshEdge> edges_ = {{0, 5}, {1, 3}, {3, 6}, {2, 4}, {4, 7},
                                         {0, 1}, {1, 2}, {3, 4}, {5, 6}, {6, 7}};
   const std::vector<MeshTrapezoid> trapezoids_ = {
-      {0, 3, 0, 1}, {3, 5, 0, 2}, {1, 3, 1, 3}, {4, 6, 2, 4},  // with height
+      {0, 3, 0, 1}, {3, 5, 0, 2}, {1, 3, 1, 3}, {4, 6, 2, 4},  // with a height
       {0, 1, 5, 5}, {1, 2, 6, 6}, {3, 4, 7, 7}, {3, 4, 7, 7}, {5, 6, 8, 8}, {6, 7, 9, 9}};
   static constexpr std::string_view kFieldOf = "AABCABBCAC";
 };

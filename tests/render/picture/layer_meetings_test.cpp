@@ -31,7 +31,7 @@ Rings polygon(const std::vector<std::pair<double, double>>& pixels) {
   return rings;
 }
 
-/// Layers with one class each, the first one lowest.
+/// Layers with one class each, from bottom to top.
 class Map {
  public:
   void add(const std::vector<std::vector<std::pair<double, double>>>& polygons, Rgba colour,
@@ -75,7 +75,7 @@ class Map {
   LayerMeetings meetings_;
 };
 
-// A slanted border through the picture, and what lies on both sides of it.
+// A slanted border through the picture, and polygons on both sides of it.
 const std::vector<std::pair<double, double>> kWest{{3.3, -1}, {11.9, 17}, {-9, 17}, {-9, -1}};
 const std::vector<std::pair<double, double>> kEast{{3.3, -1}, {11.9, 17}, {30, 17}, {30, -1}};
 
@@ -120,7 +120,7 @@ TEST(LayerMeetingsTest, ALayerOverAnEqualOneHasNoRim) {
 }
 
 TEST(LayerMeetingsTest, ALayerWithinAnotherHidesItAlongTheirCommonEdge) {
-  // The upper one ends at the same edge as the lower one, which goes on to the west.
+  // The upper layer ends at the same edge as the lower one, which extends further west.
   Map map;
   map.add({kWest}, kRed);
   map.add({{{3.3, -1}, {11.9, 17}, {6, 17}, {-3, -1}}}, kGreen);
@@ -128,7 +128,7 @@ TEST(LayerMeetingsTest, ALayerWithinAnotherHidesItAlongTheirCommonEdge) {
   for (int row = 0; row < kPixels; ++row) {
     const double edge = 3.3 + (row + 1.5) * 8.6 / 18;
     const Rgba colour = picture.at(static_cast<int>(edge), row);
-    // Green and white, and no red among them.
+    // A mixture of green and white, without red.
     EXPECT_EQ(colour.r, colour.b) << row;
   }
 }
@@ -149,7 +149,7 @@ TEST(LayerMeetingsTest, LayersThatCrossCoverWhatTheyCover) {
   Map map;
   map.add({{{4.5, -1}, {9.5, -1}, {9.5, 17}, {4.5, 17}}}, kRed);
   map.add({{{-1, 4.25}, {17, 4.25}, {17, 9.5}, {-1, 9.5}}}, kGreen);
-  // Half of the pixel is red, three quarters are green; they have three eighths in common.
+  // Half of the pixel is red, three quarters are green; they share three eighths.
   const Rgba corner = map.picture(kTransparent).at(4, 4);
   EXPECT_EQ(corner.a, 223);  // 7 / 8
   EXPECT_NEAR(corner.g, 255 * 6 / 7.0, 1);

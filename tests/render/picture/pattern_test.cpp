@@ -58,7 +58,7 @@ TEST(PatternTest, LinesRunInTheDirectionOfTheAngle) {
       ASSERT_EQ(east.at(column, row), east.at(0, row)) << column << " " << row;
     }
   }
-  // Anticlockwise from east: a step east and a step north stay on the line.
+  // Anticlockwise from east: one step east and one step north stay on the line.
   const Mask north_east = draw({PatternKind::hatch, {}, 8, 45, 2});
   for (int row = 1; row < 256; ++row) {
     for (int column = 0; column < 255; ++column) {

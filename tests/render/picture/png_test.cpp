@@ -10,7 +10,7 @@
 namespace trapeze {
 namespace {
 
-// As a viewer reads them from the header: bits a sample, and 3 palette, 2 RGB, 6 RGBA.
+// Read from the header: bits a sample, and the colour type: 3 palette, 2 RGB, 6 RGBA.
 int bits_of(const std::string& png) {
   return png.at(24);
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSide = 96;
 
-// Premultiplied.
+// Premultiplied by the opacity.
 std::vector<double> exact_channels_of(Rgba colour) {
   const double share = colour.a / 255.0;
   return {colour.r * share, colour.g * share, colour.b * share, static_cast<double>(colour.a)};
@@ -44,7 +44,7 @@ Change change_between(const RunPicture& a, const RunPicture& b) {
   return change;
 }
 
-// A disc with soft edges around a random place.
+// A disc with soft edges at a random place.
 Mask disc(std::mt19937& random) {
   std::uniform_real_distribution<double> place(0, kSide);
   const double x = place(random);
@@ -61,7 +61,7 @@ Rgba random_colour(std::mt19937& random, bool is_opaque) {
   return {byte(), byte(), byte(), is_opaque ? std::uint8_t{255} : byte()};
 }
 
-// The sum of the changes.
+// Reduces the colours and returns the sum of the changes.
 std::uint64_t reduce(RunPicture& picture, int most_change) {
   std::vector<std::uint32_t> pixels(picture.colours.size(), 0);
   for (int row = 0; row < picture.height; ++row) {
@@ -118,12 +118,12 @@ TEST_P(ReducedPicturesTest, KeepWithinTheBounds) {
   EXPECT_GT(indexed, 40);
 }
 
-// 0 stands for another seed each time; with the others, half-opaque colours moved by more once
-// their opacity was rounded.
+// 0 means a new seed for each run; with the other seeds, half-opaque colours once moved too far
+// when their opacity was rounded.
 INSTANTIATE_TEST_SUITE_P(Seeds, ReducedPicturesTest,
                          ::testing::Values(0u, 1912497036u, 3910053737u, 4231520298u));
 
-// All pixels are between two colours: steps that are right for edges would be too coarse.
+// All pixels are between two colours: the steps that suit edges would be too coarse.
 TEST(ReduceColoursTest, AGreyPictureKeepsWithinTheMean) {
   std::mt19937 random(9);
   const Mask grey =
@@ -158,7 +158,7 @@ TEST(ReduceColoursTest, FlatColoursAreExact) {
   EXPECT_GT(flat, 1000);
 }
 
-// So that no seam shows: a tile takes the same colours, whatever else there is in its picture.
+// Prevents seams: an edge gets the same colours whatever else is in the tile.
 TEST(ReduceColoursTest, AnEdgeHasTheSameColoursInEveryPicture) {
   constexpr int kRows = 32;
   const auto in_row = [](int row, const auto& value_of) {
@@ -220,7 +220,7 @@ TEST(ReduceColoursTest, TellsTheSumOfTheChanges) {
   EXPECT_GT(sum, 0);
 }
 
-// Of those that are few enough for it, also where they are gathered into a palette.
+// Where the colours are few enough, this includes gathering them into a palette.
 TEST(ReduceColoursTest, AColourThatComesSeveralTimesIsAsIfItCameOnce) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -238,7 +238,7 @@ TEST(ReduceColoursTest, AColourThatComesSeveralTimesIsAsIfItCameOnce) {
       origins.push_back(static_cast<Origin>(random() % 40 == 0 ? random() % 2 : 2));
       pixels.push_back(static_cast<std::uint32_t>(2 + random() % 50));
     }
-    // Some of them once more, of mixed origin and with one of the pixels.
+    // Some of them a second time, with mixed origin and one of the pixels.
     std::vector<Rgba> again = once;
     std::vector<Origin> origins_again = origins;
     std::vector<std::uint32_t> pixels_again = pixels;
@@ -279,7 +279,7 @@ TEST(ReduceColoursTest, FlatColoursDoNotChange) {
   EXPECT_EQ(to_pixels(picture).pixels, before.pixels);
 }
 
-// Colours around a few places, none of which lies well in the lattice.
+// Colours around a few places, none of which fits the lattice well.
 TEST(ReduceColoursTest, ColoursCloseToEachOtherFitIntoAPalette) {
   std::mt19937 random(4);
   Picture clusters{64, 64, {}};
@@ -296,7 +296,7 @@ TEST(ReduceColoursTest, ColoursCloseToEachOtherFitIntoAPalette) {
   EXPECT_LE(change_between(exact, picture).most, kMostChange);
 }
 
-// The fewer pixels are of one colour, the less those of others may change.
+// The fewer pixels have a flat colour, the less the other colours may change.
 TEST(ReduceColoursTest, OfAnExactPictureItKeepsWithinTheMean) {
   std::mt19937 random(6);
   for (const unsigned flat_of_ten : {0u, 5u, 9u}) {

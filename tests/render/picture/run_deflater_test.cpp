@@ -43,7 +43,7 @@ Bytes compressed(RunDeflater& deflater, const Pixels& pixels) {
   return {output.begin(), output.end()};
 }
 
-// Of zlib, which looks at the checksum, too. Empty if it finds something wrong.
+// Decompresses with zlib, which also verifies the checksum. Empty on any error.
 Bytes decompressed(const Bytes& compressed, std::size_t size) {
   Bytes bytes(size + 1);
   uLongf length = bytes.size();
@@ -72,7 +72,7 @@ class RandomPixels {
     return row;
   }
 
-  // Rows that are new, the same as above, or differ from it in a pixel or two.
+  // Rows that are new, equal to the one above, or different from it in a pixel or two.
   Pixels pixels(std::uint32_t columns, std::uint32_t rows) {
     Pixels pixels{columns, std::vector<std::uint32_t>{1, 3, 4}[number(0, 2)], {}};
     set_bytes_per_pixel(pixels.bytes_per_pixel);
@@ -132,7 +132,7 @@ TEST(RunDeflaterTest, ManyBlocksComeBack) {
   }
 }
 
-// Of several bytes, at random: not much more than where zlib searches all of what was before.
+// Random pixels of several bytes: not much larger than with zlib, which searches all earlier data.
 TEST(RunDeflaterTest, ColoursThatComeAgainAreReferredTo) {
   RunDeflater deflater;
   for (const std::uint32_t bytes_per_pixel : {3u, 4u}) {
@@ -148,7 +148,7 @@ TEST(RunDeflaterTest, ColoursThatComeAgainAreReferredTo) {
   }
 }
 
-// Codes of symbols whose counts grow like Fibonacci's numbers would be longer than a code may be.
+// If counts grow like Fibonacci numbers, unlimited codes would be longer than the format allows.
 TEST(RunDeflaterTest, CodesAreNoLongerThanTheyMayBe) {
   RunDeflater deflater;
   Row row;
@@ -167,7 +167,7 @@ TEST(RunDeflaterTest, CodesAreNoLongerThanTheyMayBe) {
 
 TEST(RunDeflaterTest, APictureOfOneColourTakesNextToNothing) {
   RunDeflater deflater;
-  // Of 8 bits, and of 1 bit, which is what it has as PNG.
+  // With 8 bits a pixel, and with 1 bit, which the PNG has.
   const Pixels bytes{256, 1, std::vector<Row>(256, Row{{256, 7}})};
   const Pixels bits{32, 1, std::vector<Row>(256, Row{{32, 0}})};
   expect_back(deflater, bytes);

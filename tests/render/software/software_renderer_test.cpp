@@ -40,9 +40,9 @@ int value_of(double area) {
   return static_cast<int>(std::floor(area * 255 + 0.5));
 }
 
-// Shares of pixels by another way: rows of 1/32 cell, in each of which every trapezoid is an
-// interval of x. The y of a vertex is a whole number of cells, so no trapezoid begins or ends
-// within such a row.
+// The covered share of pixels, computed differently: rows of 1/32 cell, in each of which every
+// trapezoid is an interval of x. The y of a vertex is a whole number of cells, so no trapezoid
+// begins or ends within such a row.
 std::vector<double> shares_by_rows(const MeshView& mesh, const View& view) {
   std::vector<double> sums(static_cast<std::size_t>(view.width * view.height), 0.0);
   constexpr int kRowsPerCell = 32;
@@ -87,8 +87,8 @@ TEST(SoftwareRendererTest, CoversPixelsOfABoxByTheirSharesExactly) {
 TEST(SoftwareRendererTest, ABoxWithItsEdgesChangedRoundTakesAreaAway) {
   SampleMesh mesh;
   mesh.add_box(-16, -16, 80, 80);
-  // Two columns of holes over the west and the east border, a quarter of a pixel wide inside, and
-  // one hole of half a pixel within.
+  // Two columns of holes across the west and the east border, a quarter of a pixel wide inside, and
+  // a hole half a pixel wide inside.
   for (const auto& [west, east] : {std::pair{-8, 4}, std::pair{60, 72}, std::pair{24, 32}}) {
     mesh.add(mesh.add_edge({east, 0}, {east, 16}), mesh.add_edge({west, 0}, {west, 16}), 0, 16);
   }
@@ -193,15 +193,15 @@ TEST(SoftwareRendererTest, SumsAHundredThousandTrapezoidsWithinOnePixel) {
   for (std::int32_t i = 0; i < 100'000; ++i) mesh.add_box(0, 2 * i, 1 << 17, 2 * i + 1);
   const double area = 100'000.0 * (1 << 17) / (262144.0 * 262144.0);
   const Mask mask = draw(mesh, square_view(0, 262144, 1));
-  // Half a value of rounding; each height is half a unit, rounded by chance: three times the
-  // standard deviation of so many is 0.93.
+  // Half a value for rounding; each height is half a unit, rounded at random: three times the
+  // standard deviation of 100,000 of these is 0.93.
   EXPECT_NEAR(mask.at(0, 0), area * 255, 0.5 + 0.93);
 }
 
 TEST(SoftwareRendererTest, AMaskDoesNotDependOnTheOrderOfTrapezoids) {
   std::mt19937 random(7);
   const View view = square_view(1000, 16, 24);
-  for (const int count : {90, 40'000}) {  // with more than fit into 32 bits, too
+  for (const int count : {90, 40'000}) {  // also with sums that exceed 32 bits
     const SampleMesh mesh = random_scatter(random, Box{-3000, 0, 4000, 2600}, count);
     const TrapezoidRange all = mesh.all();
     Mask in_order;
@@ -217,7 +217,8 @@ TEST(SoftwareRendererTest, AMaskDoesNotDependOnTheOrderOfTrapezoids) {
 }
 
 TEST(SoftwareRendererTest, AMaskDoesNotDependOnHowSidesAreCut) {
-  // A box that reaches far out of the picture, whole and cut at a row that is none of pixels.
+  // A box that extends far beyond the picture, whole and cut at a row that is not on a pixel
+  // border.
   SampleMesh whole;
   whole.add_box(-5000, -700, 90'000, 1234);
   SampleMesh cut;
@@ -240,7 +241,7 @@ TEST(SoftwareRendererTest, AgreesWithSummingRows) {
     const std::vector<double> expected = shares_by_rows(mesh.view(), view);
     const std::vector<std::uint8_t> actual = testing::values_of(draw(mesh, view));
     for (std::size_t p = 0; p < expected.size(); ++p) {
-      // Half a value of rounding, and what horizontal edges lose within a row.
+      // Half a value for rounding, and the loss of horizontal edges within a row.
       ASSERT_NEAR(actual[p], expected[p] * 255, 0.5 + 0.5) << "mesh " << i << ", pixel " << p;
     }
   }
@@ -257,12 +258,12 @@ TEST(SoftwareRendererTest, CoversExactlyTheAreaOfTheMesh) {
     const auto drawn = testing::values_of(mask);
     const double sum = std::accumulate(drawn.begin(), drawn.end(), 0.0);
     const double area = static_cast<double>(mesh.area()) / (32 * 32);
-    // Rounding to whole values is a random walk of at most half a value a pixel.
+    // Rounding to whole values is a random walk with at most half a value a pixel.
     EXPECT_NEAR(sum / 255, area, 4 * 0.3 / 255 * 256);
   }
 }
 
-// The area right of an edge, in a picture that it passes from above to below: by rows, a
+// The area to the right of an edge that crosses the picture from above to below, summed in rows, a
 // thousand to a pixel.
 double share_right_of(const MeshView& mesh, std::uint32_t edge, const View& view, int column,
                       int row) {
@@ -290,8 +291,8 @@ TEST(SoftwareRendererTest, PlacesAnEdgeAcrossTheWorldToAThousandthOfAPixel) {
     const std::uint32_t left = mesh.add_edge(upper, lower);
     const std::uint32_t right = mesh.add_edge({kGridMax, upper.y}, {kGridMax, lower.y});
     mesh.add(left, right, upper.y, lower.y);
-    // A value is 1/255 of a pixel, which is 1/100 of a cell here: 2.5 / 100,000 of a pixel of
-    // zoom 22. Every edge passes the picture, which is a cell wide and high.
+    // A value is 1/255 of a pixel, and a pixel is 1/100 of a cell here: 2.5 / 100,000 of a pixel of
+    // zoom 22. Every edge crosses the picture, which is a cell wide and high.
     const View view{static_cast<std::int64_t>(std::floor(x_at(mesh.view(), left, 0.3737L))), 0,
                     0.01, 100, 100};
     const Mask mask = draw(mesh, view);

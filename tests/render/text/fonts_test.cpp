@@ -24,7 +24,7 @@ constexpr Rgba kWhite{255, 255, 255, 255};
 constexpr Rgba kInk{0, 0, 0, 255};
 constexpr int kSize = 24;
 
-/// The usual font of that name; empty if it is not installed.
+/// The file of the usual font with that name; empty if it is not installed.
 std::string font_file(std::string_view name) {
   const auto files = usual_fonts();
   const auto found = std::ranges::find_if(
@@ -52,7 +52,7 @@ struct Drawing {
     for (const int value : values) sum += value;
     return sum;
   }
-  /// Of the columns from `from` on, as many as said.
+  /// The ink in `count` columns, starting at column `from`.
   long ink_of(int from, int count) const {
     long sum = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -154,7 +154,7 @@ TEST_F(FontsTest, ArabicLettersAreJoined) {
   const std::string beh = "\u0628";
   const std::string apart = beh + "\u200c" + beh + "\u200c" + beh;  // zero width non-joiner
   EXPECT_LT(width(beh + beh + beh), width(apart) - 3) << "forms of letters that stand alone";
-  // Joined on the base line: no column between the first and the last letter is without ink.
+  // Joined on the baseline: every column between the first and the last letter has ink.
   const Drawing joined = drawn(beh + beh + beh);
   for (int x = 3; x + 3 < joined.width; ++x) EXPECT_GT(joined.ink_of(x, 1), 0) << x;
   EXPECT_LT(width("\u0644\u0627"), width("\u0644") + width("\u0627"))
@@ -204,7 +204,7 @@ TEST_F(FontsTest, DevanagariIsCombined) {
   const std::string virama = "\u094d";
   const std::string ssa = "\u0937";
   EXPECT_LT(width(ka + virama + ssa), width(ka) + width(ssa) - 3) << "a conjunct";
-  // The vowel sign i is written before the consonant that it follows.
+  // The vowel sign i is written to the left of the consonant that it follows.
   const Drawing alone = drawn(ka);
   const Drawing ki = drawn(ka + "\u093f");
   const auto foot_of_last_columns = [&](const Drawing& drawing) {
@@ -326,7 +326,7 @@ TEST_F(FontsTest, TextIsLaidOverWhatIsThereInItsColour) {
   EXPECT_EQ(picture.at(kSize / 3, kBase - 5), (Rgba{128, 0, 127, 255}));
 }
 
-/// Lines of every script that is combined or reordered in its own way, as far as there are fonts.
+/// Lines in every script with its own rules for combining or ordering, where a font is installed.
 std::vector<std::string> lines_of_scripts() {
   std::vector<std::string> lines = {"Stra\u00dfe", "\u0395\u03bb\u03bb\u03ac\u03b4\u03b1",
                                     "\u0623\u0641\u063a\u0627\u0646\u0633\u062a\u0627\u0646",
@@ -352,7 +352,7 @@ TEST_F(FontsTest, AMaskHasTheLettersOfTheLineInItsMiddle) {
       letters += mask.letters[i];
       moment += mask.letters[i] * static_cast<double>(i % static_cast<std::size_t>(side));
     }
-    // The same ink but for steps and for where columns begin.
+    // The same ink, except for rounding steps and the position of columns.
     EXPECT_NEAR(static_cast<double>(letters), static_cast<double>(drawing.ink()),
                 0.04 * static_cast<double>(drawing.ink()))
         << line;

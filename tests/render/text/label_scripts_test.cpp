@@ -1,5 +1,5 @@
-// Labels in scripts whose letters change beside each other, run from right to left or are put
-// together, each against a picture beside this file, which was looked at.
+// Labels in scripts whose letters change beside each other, run from right to left or are combined.
+// Each is compared with a reference picture in the folder pictures, checked by eye.
 //
 // With TRAPEZE_DRAW_SCRIPTS=FOLDER the pictures are written there instead.
 #include <gtest/gtest.h>
@@ -20,14 +20,14 @@
 namespace trapeze {
 namespace {
 
-// Between versions of FreeType edges may differ a little.
-constexpr int kMostOff = 48;               // of 255, of a pixel
+// Edges may differ a little between versions of FreeType.
+constexpr int kMostOff = 48;               // of 255, in a pixel
 constexpr double kMostOffAtTheMean = 1.5;  // of 255
 
 struct Script {
   const char* name;
-  const char* font;     // its file
-  const char* package;  // of Debian, that has it
+  const char* font;     // the font file
+  const char* package;  // the Debian package that contains it
   std::vector<std::string> lines;
 
   friend std::ostream& operator<<(std::ostream& out, const Script& script) {
@@ -37,7 +37,7 @@ struct Script {
 
 const std::vector<Script>& scripts() {
   static const std::vector<Script> all = {
-      // Letters are joined, lam and alif into one; numbers run from left to right.
+      // Letters are joined, lam and alif into one sign; numbers run from left to right.
       {"arabic",
        "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
        "fonts-dejavu-core",
@@ -47,12 +47,12 @@ const std::vector<Script>& scripts() {
        "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
        "fonts-dejavu-core",
        {"\u05d9\u05e9\u05e8\u05d0\u05dc 12", "\u05d1\u05b0\u05bc\u05e8\u05b5\u05d0 (B)"}},
-      // A vowel sign stands before its consonant; consonants are put together.
+      // A vowel sign is written before its consonant; consonants are combined.
       {"devanagari",
        "/usr/share/fonts/truetype/lohit-devanagari/Lohit-Devanagari.ttf",
        "fonts-lohit-deva",
        {"\u0939\u093f\u0928\u094d\u0926\u0940", "\u0915\u094d\u0937\u0947\u0924\u094d\u0930"}},
-      // Vowels and tones one above the other.
+      // Vowels and tone marks are stacked.
       {"thai",
        "/usr/share/fonts/truetype/tlwg/Loma.ttf",
        "fonts-tlwg-loma-ttf",
@@ -78,7 +78,7 @@ Picture drawn(const Script& script) {
   const TextMask mask = fonts.mask_of(script.lines, kSize, 1.4 * kSize, 3, 256, 128);
   Picture picture{mask.width, mask.height, {}};
   for (std::size_t i = 0; i < mask.letters.size(); ++i) {
-    // Letters are dark on a light halo on grey.
+    // Dark letters on a light halo on grey.
     const int light = 128 + mask.halo[i] * 127 / 255;
     const auto grey = static_cast<std::uint8_t>(light - light * mask.letters[i] / 255);
     picture.pixels.push_back({grey, grey, grey, 255});

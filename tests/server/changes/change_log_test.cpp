@@ -35,7 +35,7 @@ bool holds_soon(const std::function<bool()>& condition) {
   return false;
 }
 
-/// Another generation of the same polygons.
+/// Another generation with the same polygons.
 Generation with_revision(const Generation& dataset, std::uint64_t revision) {
   std::vector<ServedLayer> layers = dataset->layers_on_all_grids();
   layers[0].revision = revision;
@@ -84,7 +84,7 @@ TEST_F(ChangeLogTest, ASlowCommandIsToldOfEverythingThatChangesMeanwhile) {
   };
   come(edited(land_, states.back()));
   ASSERT_TRUE(holds_soon([this] { return is_there("began"); }));
-  // What shows is only in the first of many more than are kept.
+  // Only the first of the following changes is visible; there are many more than the log keeps.
   come(edited(land_, states.back()));
   const ChangeLog::Answer second = ask(log, states[1], states[2]);
   ASSERT_EQ(second.state, State::known) << "although the command is still busy";

@@ -54,7 +54,7 @@ class Drawn {
  public:
   explicit Drawn(std::string style) : style_(std::move(style)) {}
 
-  /// The tiles that have other bytes, of all where there may be any.
+  /// All tiles near the land whose bytes differ.
   Tiles different(const std::shared_ptr<const Dataset>& before,
                   const std::shared_ptr<const Dataset>& after) {
     Tiles tiles;
@@ -114,7 +114,8 @@ TEST_P(ChangedTilesTest, AreAllAndOnlyThoseThatHaveOtherBytes) {
     truly += different.size();
     before = after;
   }
-  // The others show a change that is too small for any pixel, or of corners out of sight.
+  // The remaining tiles show a change that is too small for any pixel, or rounded corners outside
+  // the tile.
   const bool is_smooth = std::string_view(GetParam()).find("smooth") != std::string_view::npos;
   EXPECT_LE(listed, truly * 3 / 2 + (is_smooth ? 90 : 60));
 }

@@ -1,4 +1,4 @@
-// The program as its users meet it: started, asked, and ended from outside.
+// Tests the program from the outside: starts it, sends requests, and ends it with signals.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -49,7 +49,8 @@ std::string scratch_path(const std::string& name) {
          ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + name;
 }
 
-/// A run of the program; what it prints goes to a file. Killed if it outlives the test.
+/// A run of the program with its output redirected to a file. Killed if it is still running when
+/// the test ends.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments) : output_(scratch_path("output.txt")) {
@@ -82,7 +83,7 @@ class Program {
 
   void send_signal(int signal) const { kill(pid_, signal); }
 
-  /// The exit status; nothing if it did not exit by itself within 20 seconds.
+  /// The exit status; empty if the program does not exit within 20 seconds.
   std::optional<int> wait() {
     for (int i = 0; i < 2000 && !status_; ++i) {
       int status = 0;
@@ -95,7 +96,7 @@ class Program {
     return status_;
   }
 
-  /// The port, once it listens.
+  /// The port, once the program listens.
   std::uint16_t port() const {
     const std::regex listening("listening on [0-9.]+ port ([0-9]+)");
     for (int i = 0; i < 2000; ++i) {
@@ -136,7 +137,7 @@ double metric(std::uint16_t port, const std::string& name) {
   return begin == std::string::npos ? 0 : std::stod(text.substr(begin + name.size() + 2));
 }
 
-/// A round island of so many vertices.
+/// A round island with `vertices` vertices.
 void write_island(const std::string& path, int vertices) {
   std::ofstream file(path);
   file << R"({"type": "Polygon", "coordinates": [[)";
@@ -149,7 +150,7 @@ void write_island(const std::string& path, int vertices) {
   file << "]]}";
 }
 
-/// A polygon whose graph takes seconds, in a folder of its own.
+/// A polygon whose graph takes seconds to build, in a folder of its own.
 std::string write_large_polygon(const std::string& folder) {
   std::filesystem::create_directories(folder);
   const std::string path = folder + "/comb.geojson";
@@ -234,7 +235,7 @@ TEST(ProgramTest, KeepsTheMemoryOfLayersAndNotThatOfBuildingThem) {
              "trapeze_layer_bytes{layer=\"" + std::filesystem::path(map).stem().string() + "\"}");
   EXPECT_GT(layer, 10e6);
   double with = 0;
-  // It is ready a little before it has given all back.
+  // The server is ready a little before it has released all memory.
   for (int i = 0; i < 1000; ++i) {
     with = metric(server.port(), kResident);
     if (with - without < 1.2 * layer + 10e6) break;
@@ -366,7 +367,7 @@ TEST(ProgramTest, AFontThatCannotBeUsedIsAWarningOfConfigCheckAndDoesNotKeepFrom
   std::filesystem::remove(font);
 }
 
-/// A folder with maps that are good, and some that are broken in one way each.
+/// A folder with valid maps, and some maps that are broken in one way each.
 class ConfigCheckTest : public ::testing::Test {
  protected:
   ConfigCheckTest() {
@@ -386,7 +387,7 @@ class ConfigCheckTest : public ::testing::Test {
     copy("west.geojson", "changed.geojson");
     std::filesystem::copy_file(file("map.trapeze"), file("other.trapeze"));
     std::fstream(file("other.trapeze"), std::ios::in | std::ios::out | std::ios::binary)
-        .seekp(12)  // of the version in its header
+        .seekp(12)  // the version in the file header
         .put('\x63');
   }
 
@@ -403,13 +404,13 @@ class ConfigCheckTest : public ::testing::Test {
     ASSERT_EQ(program.wait(), 0) << program.output();
   }
 
-  /// What is said, and whether that keeps a server from starting.
+  /// The output of `config check` and its exit status, which shows whether a server would start.
   std::pair<std::optional<int>, std::string> check() const {
     Program program({"config", "check", file("trapeze.toml")});
     const auto status = program.wait();
     return {status, program.output()};
   }
-  /// At a port that is free, unless it is of the configuration.
+  /// Listens on a free port, unless the configuration sets one.
   std::optional<int> serve() const {
     std::vector<std::string> arguments = {"serve", "--config", file("trapeze.toml")};
     const bool has_port = read_file(file("trapeze.toml")).find("port = ") != std::string::npos;
@@ -427,7 +428,7 @@ class ConfigCheckTest : public ::testing::Test {
   const std::string folder_ = new_folder();
 };
 
-/// A configuration with one thing that is wrong.
+/// A configuration with a single mistake.
 struct Broken {
   const char* text;
   const char* position;  // line:column
@@ -906,7 +907,7 @@ TEST(ProgramTest, PreparesFilesThatAreServedUnderTheSameTags) {
   std::filesystem::remove_all(folder);
 }
 
-// As `trapeze serve prepared/*.trapeze` names them.
+// The arguments are in the order in which the shell expands `trapeze serve prepared/*.trapeze`.
 TEST(ProgramTest, WhatIsPreparedForOtherGridsBelongsToTheLayerOfItsName) {
   const std::string folder = scratch_path("prepared_on_grids");
   std::filesystem::remove_all(folder);
@@ -930,7 +931,7 @@ TEST(ProgramTest, WhatIsPreparedForOtherGridsBelongsToTheLayerOfItsName) {
   }
   Program check({"check", mercator, lambert});
   EXPECT_EQ(check.wait(), 0) << check.output();
-  const std::string old = folder + "/rings.2024-05.trapeze";  // which is no system
+  const std::string old = folder + "/rings.2024-05.trapeze";  // "2024-05" is not a reference system
   std::filesystem::copy_file(mercator, old);
   Program check_old({"check", old});
   EXPECT_EQ(check_old.wait(), 0) << check_old.output();

@@ -469,7 +469,7 @@ std::string example_text() {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What not to say is another thing than any value.
+/// Settings for which "not set" differs from every value; the example only shows them in comments.
 bool is_comment_in_example(const std::string& key) {
   return key == "prepared" || key == "source_layer" || key == "where" || key == "attributes" ||
          key == "live_query" || key == "detail_zoom" || key == "group" ||

@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 constexpr std::int32_t kFar =
-    1 << 28;  // an order of place then does not depend on the order of rows
+    1 << 28;  // so the order by place does not depend on the order of rows
 
 Rings square_at(std::int32_t x) {
   Rings rings;
@@ -36,7 +36,7 @@ Rings square_at(std::int32_t x) {
   return rings;
 }
 
-/// The revision of two named features with a square each, at these places.
+/// The revision of a layer with two named features, each a square at one of these places.
 std::uint64_t revision_of_squares_at(std::array<std::int32_t, 2> places) {
   FeatureTable features({{"name", FieldType::text}});
   std::vector<LayerBuilder> builders(1);
@@ -61,7 +61,7 @@ TEST(RevisionOf, ChangesWhenTwoFeaturesSwapTheirPolygons) {
   EXPECT_NE(revision_of_squares_at({0, kFar}), revision_of_squares_at({kFar, 0}));
 }
 
-/// Two layers of files of their own, loaded, and loaded once more after a change.
+/// Two layers, each with its own file, loaded twice with a change in between.
 class LoadedAgain : public ::testing::Test {
  protected:
   LoadedAgain() {
@@ -71,7 +71,7 @@ class LoadedAgain : public ::testing::Test {
     before_ = Dataset::load(layers_);
   }
 
-  /// A square; each call makes another file of it.
+  /// A square; each call writes a different file.
   void write(const std::string& name, int lon) {
     folder_.write(name, fmt::format(R"({{"type": "Polygon", "coordinates": )"
                                     R"([[[{0},0],[{1},0],[{1},5],[{0},5],[{0},0]]]}})",
@@ -81,7 +81,7 @@ class LoadedAgain : public ::testing::Test {
   }
 
   void load_again() { after_ = Dataset::load(layers_, before_.get()); }
-  /// The names of the layers that are the ones from before.
+  /// The names of the layers that were kept from before the change.
   std::vector<std::string> kept() const {
     std::vector<std::string> names;
     for (const ServedLayer& layer : after_->layers()) {
@@ -135,7 +135,7 @@ TEST_F(LoadedAgain, ReadsWhatMayHaveChangedInAnotherFile) {
   EXPECT_THAT(kept(), ElementsAre("other"));
 }
 
-/// Squares in a row, the first of them as high as that.
+/// Squares in a row; the first has the height `height`.
 std::string row_of_squares(int count, int height) {
   std::string text = R"({"type": "FeatureCollection", "features": [)";
   for (int i = 0; i < count; ++i) {
@@ -180,7 +180,7 @@ TEST_F(LoadedAgain, BuildsWhatIsToBeServedWithoutTheTopologyTestOnce) {
   EXPECT_EQ(after_->layers()[0].untested, built);
 }
 
-/// Squares beside each other, the last `broken` of them without finite coordinates.
+/// Squares side by side, the last `broken` of them without finite coordinates.
 std::string squares(int count, int broken) {
   std::string text = R"({"type": "FeatureCollection", "features": [)";
   for (int i = 0; i < count; ++i) {
@@ -192,7 +192,7 @@ std::string squares(int count, int broken) {
   return text + "]}";
 }
 
-/// What keeps layers from being served; empty if nothing does.
+/// The reason why the layers are not served; empty if there is none.
 std::string refusal_of(const std::vector<LayerConfig>& layers, const Dataset* previous = nullptr) {
   try {
     Dataset::load(layers, previous);

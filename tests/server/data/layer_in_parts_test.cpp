@@ -1,4 +1,4 @@
-// A layer that is prepared in parts is served as the one that was built whole.
+// A layer that is prepared in parts is served like the layer that is built as a whole.
 #include <gmock/gmock.h>
 #include <spdlog/fmt/fmt.h>
 
@@ -31,7 +31,7 @@
 namespace trapeze {
 namespace {
 
-/// Villages of houses, some wall to wall, some over each other, with a wood and a pond here and
+/// Villages of houses, some with shared walls, some overlapping, with a wood and a pond here and
 /// there, in degrees.
 class Villages {
  public:
@@ -52,12 +52,12 @@ class Villages {
     const double y = 46 + next(1);
     for (int row = 0; row < 4; ++row) {
       for (int column = 0; column < 4; ++column) {
-        // Those of every other row share their walls.
+        // Houses in every other row share their walls.
         const double width = row % 2 == 0 ? 4e-4 : 1e-4 + next(2e-4);
         add_box(x + 4e-4 * column, y + 6e-4 * row, width, 3e-4, "house");
       }
     }
-    add_box(x + 3e-4, y + 2e-4, 5e-4, 4e-4, "roof");  // over others
+    add_box(x + 3e-4, y + 2e-4, 5e-4, 4e-4, "roof");  // overlaps other features
     if (next(1) < 0.5) add_round(x + 0.004, y + 0.001, 0.0015, "wood");
     if (next(1) < 0.5) add_round(x + 0.002, y + 0.004, 0.0008, "pond");
   }
@@ -91,7 +91,8 @@ class Villages {
   std::vector<std::string> features_;
 };
 
-/// As `trapeze prepare --part 1-N/N` does it; the pattern of the parts.
+/// Prepares the parts as `trapeze prepare --part 1-N/N` does; returns the file name pattern of the
+/// parts.
 std::string prepare_parts(const TemporaryFolder& folder, const std::string& source,
                           std::uint32_t count, CoverageMode coverage, bool has_overview) {
   LoadOptions options;
@@ -119,7 +120,7 @@ std::shared_ptr<const Dataset> load(const std::string& file, CoverageMode covera
   return Dataset::load(layers);
 }
 
-/// What both draw, and how far that is apart.
+/// Draws the whole layer and the layer in parts, and measures the difference.
 class Comparison {
  public:
   Comparison(std::shared_ptr<const Dataset> whole, std::shared_ptr<const Dataset> parts)
@@ -127,8 +128,8 @@ class Comparison {
         parts_(std::move(parts)),
         painter_(std::make_unique<SoftwareRenderer>()) {}
 
-  /// Tiles over the layer, from a zoom at which it is about one tile to five zooms later, where
-  /// that are many a share of them.
+  /// Visits tiles over the layer, from two zooms before the one at which the layer is about as wide
+  /// as a tile to five zooms after it; a share of the tiles where there are many.
   template <typename Visit>
   void for_each_tile(const Visit& visit) const {
     const Box& box = whole_->layers()[0].layer->bounds();
@@ -149,8 +150,8 @@ class Comparison {
     }
   }
 
-  /// Tags, too, unless features that are seen through lie over each other: in which order these
-  /// come up counts there.
+  /// Compares tags as well, unless overlapping features are translucent: their order affects the
+  /// tag.
   void expect_equal(const std::string& query) {
     const bool is_seen_through = query.find("opacity") != std::string::npos;
     int wrong = 0;
@@ -175,9 +176,9 @@ class Comparison {
 
   struct Distance {
     double ink = 0;          // the sum of opacities of the whole layer, in whole pixels
-    double missing_ink = 0;  // by how much the other has less, tile by tile
-    std::size_t pixels = 0;  // in which there is something
-    std::size_t far = 0;     // of these, those that are more than 16 of 255 apart
+    double missing_ink = 0;  // the sum over tiles of the difference in ink between the two
+    std::size_t pixels = 0;  // pixels in which either draws something
+    std::size_t far = 0;     // of these, pixels that differ by more than 16 of 255
   };
   Distance distance(const std::string& query) {
     Distance sum;
@@ -224,7 +225,7 @@ class Comparison {
 };
 
 /// Styles in which whole and parts are equal in every byte: dust that is told apart by class is
-/// gathered pixel by pixel over all parts, and what is no dust does not depend on parts at all.
+/// gathered pixel by pixel over all parts, and everything else does not depend on the parts at all.
 constexpr const char* kExactQueries[] = {
     "small=drop",
     "small=drop&fill-opacity=0.4&stroke=black&stroke-width=3&stroke-linejoin=miter",
@@ -374,7 +375,7 @@ TEST_F(LayerInThreeParts, WhatWouldReadAllOfThemForATileIsRefused) {
   EXPECT_EQ(refused.status, 400);
   EXPECT_THAT(*refused.body, ::testing::HasSubstr("in several parts"));
   EXPECT_EQ(site.get("/tiles/places/3/4/2.png?color-by=number&breaks=3,9&ramp=YlGnBu").status, 200);
-  // Nor is it said that there are no numbers.
+  // The legend does not claim that there are no numbers.
   const std::string legend =
       body_of("/legend/places.json?color-by=number&breaks=3,9&ramp=YlGnBu", parts_);
   EXPECT_THAT(legend, ::testing::HasSubstr("\"breaks\""));
@@ -383,7 +384,7 @@ TEST_F(LayerInThreeParts, WhatWouldReadAllOfThemForATileIsRefused) {
 
 TEST_F(LayerInThreeParts, DiffersInTheTilesInWhichTheWholeDoes) {
   std::string changed_text = Villages(1).geojson();
-  // One house gets another kind.
+  // One feature gets another kind.
   const std::string before = R"("kind":"pond","number":)";
   changed_text.replace(changed_text.find(before), before.size(), R"("kind":"lake","number":)");
   const TemporaryFolder folder;

@@ -1,4 +1,4 @@
-// Layers that are prepared are served as if they had been built.
+// Prepared layers are served as if they had been built from their source.
 #include <gmock/gmock.h>
 #include <spdlog/fmt/fmt.h>
 
@@ -24,7 +24,7 @@ namespace {
 
 using testing::fixture;
 
-/// As `trapeze prepare` does it; the path of the prepared file.
+/// Prepares as `trapeze prepare` does; returns the path of the prepared file.
 std::string prepare(const TemporaryFolder& folder, const std::string& source) {
   const std::string path = folder.file(std::filesystem::path(source).stem().string() + ".trapeze");
   const LoadedLayer loaded = load_layer(source);
@@ -38,7 +38,7 @@ std::shared_ptr<const Dataset> load(const std::string& file) {
   return Dataset::load(layers);
 }
 
-/// Paints the tiles of both and compares picture and entity tag.
+/// Paints the tiles of both datasets and compares pictures and entity tags.
 class Comparison {
  public:
   Comparison(std::shared_ptr<const Dataset> built, std::shared_ptr<const Dataset> prepared)
@@ -58,7 +58,7 @@ class Comparison {
     EXPECT_EQ(*paint(prepared).bytes, *paint(built).bytes) << target;
   }
 
-  /// A tile of every zoom, over the middle of a polygon.
+  /// A tile at every zoom, over the middle of a polygon.
   void expect_equal_at_all_zooms(const std::string& query) {
     const MeshView& mesh = built_->layers()[0].layer->mesh();
     const Point place = mesh.vertices[mesh.vertices.size() / 2];

@@ -1,5 +1,5 @@
-// Maps in degrees: EPSG:4326 and CRS:84, from the graph of Web Mercator, by every way to ask for
-// them.
+// Maps in degrees, EPSG:4326 and CRS:84, drawn from the graph of Web Mercator, through every
+// interface that serves them.
 #include <gmock/gmock.h>
 #include <spdlog/fmt/fmt.h>
 
@@ -16,8 +16,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The sample has the outer ring up to 66.5133 degrees in the north and the south, and 90 in the
-/// west and the east; the hole up to 40.9799 and 45.
+/// In the sample, the outer ring reaches 66.5133 degrees north and south and 90 degrees west and
+/// east; the hole reaches 40.9799 and 45 degrees.
 constexpr const char* kWorld = "bbox=-180,-90,180,90&width=720&height=360";
 
 std::string wms(const std::string& version, const std::string& system, const std::string& box) {
@@ -51,7 +51,7 @@ TEST_F(DegreesTest, EveryDegreeIsAsHigh) {
   const Picture map = picture(std::string("/map/rings.png?crs=CRS:84&quality=exact&") + kWorld);
   ASSERT_EQ(map.width, 720);
   ASSERT_EQ(map.height, 360);
-  const int column = 200;  // 80 degrees west, in the ring
+  const int column = 200;  // 80 degrees west, inside the ring
   EXPECT_EQ(map.at(column, 45).a, 0);
   EXPECT_NEAR(map.at(column, 46).a, 255 * 2 * (66.5133 - 66.5), 2);
   EXPECT_EQ(map.at(column, 47).a, 255);
@@ -67,7 +67,7 @@ TEST_F(DegreesTest, BeyondTheMapOfWebMercatorThereIsNothing) {
       std::string(
           "/map/west.png?crs=EPSG:4326&background=fff&fill=000&fill-opacity=1&quality=exact&") +
       kWorld);
-  EXPECT_EQ(map.at(100, 8), (Rgba{255, 255, 255, 255}));  // 86 to 85.5
+  EXPECT_EQ(map.at(100, 8), (Rgba{255, 255, 255, 255}));  // 86 to 85.5 degrees
   EXPECT_EQ(map.at(100, 10), (Rgba{0, 0, 0, 255}));
   EXPECT_EQ(map.at(100, 349), (Rgba{0, 0, 0, 255}));
   EXPECT_EQ(map.at(100, 351), (Rgba{255, 255, 255, 255}));
@@ -150,7 +150,7 @@ TEST_F(DegreesTest, MapsOfTheOgcAreInTheSystemThatIsAskedFor) {
   expect_same(ogc + "bbox=10,20,100,70&crs=[EPSG:4326]", map);
   expect_same(ogc + "bbox=20,10,70,100&bbox-crs=" + uri + "EPSG/0/4326&crs=" + uri + "EPSG/0/4326",
               map);
-  // A box in degrees around a map in metres, and the other way round.
+  // A box in degrees for a map in metres, and the other way round.
   expect_same(ogc + "bbox=20,10,70,100&bbox-crs=" + uri + "EPSG/0/4326",
               "/map/rings.png?bbox=10,20,100,70&width=300");
   const auto response = sample_.get(ogc + "bbox=10,20,100,70&crs=" + uri + "EPSG/0/4326");
@@ -214,7 +214,7 @@ TEST_F(DegreesTest, WmtsHasTilesInDegrees) {
       "/wmts?SERVICE=WMTS&REQUEST=GetTile&VERSION=1.0.0&LAYER=rings&STYLE=default&FORMAT=image/png&"
       "TILEMATRIXSET=WorldCRS84Quad&TILEMATRIX=2&TILEROW=0&TILECOL=4",
       "/tiles/rings/WorldCRS84Quad/2/4/0.png");
-  // Of 180 degrees in 256 pixels, row 33 begins at 66.8 degrees and row 34 at 66.1.
+  // With 180 degrees in 256 pixels, row 33 begins at 66.8 degrees and row 34 at 66.1.
   EXPECT_THAT(*sample_.get("/wmts/rings/default/WorldCRS84Quad/0/0/1/34/100.txt").body,
               HasSubstr("layer = rings"));
   EXPECT_THAT(*sample_.get("/wmts/rings/default/WorldCRS84Quad/0/0/1/32/100.txt").body,
@@ -255,7 +255,7 @@ TEST_F(DegreesTest, PicturesHaveTagsOfTheirOwn) {
       304);
 }
 
-// Large maps are drawn in bands, which have to meet.
+// Large maps are drawn in bands, which must join without a visible seam.
 TEST_F(DegreesTest, BandsAreWhatTheWholeIs) {
   const std::string style = "&stroke=000&stroke-width=2&quality=exact";
   const Picture large =

@@ -1,4 +1,4 @@
-// GDAL's own clients of tile services read what we serve, pixel for pixel.
+// GDAL's clients for tile services read our tiles, pixel for pixel.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -50,12 +50,12 @@ class GdalClientsTest : public ::testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
-  /// The world in 512 x 512 pixels, which is zoom 1, or larger, as gdal_translate reads it from a
-  /// source.
+  /// The world as gdal_translate reads it from a source: 256 << zoom pixels wide and high, 512 at
+  /// zoom 1.
   Picture world(const std::string& source, const std::string& options = {}, int zoom = 1) {
     const std::string size = std::to_string(256 << zoom);
     const std::string file = folder_ + "/world.png";
-    // Nothing from earlier runs, and nothing left behind; no proxy between.
+    // No files from earlier runs, none left behind, and no proxy.
     const CommandResult translated = run_command(
         "cd " + folder_ + " && no_proxy=127.0.0.1 GDAL_DEFAULT_WMS_CACHE_PATH=" + folder_ +
         "/cache gdal_translate -q -of PNG -outsize " + size + " " + size + " " + options + " '" +
@@ -67,7 +67,7 @@ class GdalClientsTest : public ::testing::Test {
     return decode_png(bytes);
   }
 
-  /// How many pixels differ from the tiles of the zoom, put together.
+  /// The number of pixels that differ from the tiles of that zoom, put together.
   int differences(const Picture& world, const std::string& layer, int zoom = 1) {
     EXPECT_EQ(world.width, 256 << zoom);
     EXPECT_EQ(world.height, 256 << zoom);
@@ -120,7 +120,7 @@ TEST_F(GdalClientsTest, TheWmtsClientReadsOurTiles) {
       0);
 }
 
-// In degrees, where version 1.3.0 has latitudes first.
+// In degrees, for which version 1.3.0 puts the latitude first.
 TEST_F(GdalClientsTest, TheWmsClientReadsOurMapsInDegrees) {
   for (const char* version : {"1.1.1", "1.3.0"}) {
     const std::string system = version == std::string("1.1.1") ? "SRS" : "CRS";
@@ -176,12 +176,13 @@ TEST_F(GdalClientsTest, TheWmsClientReadsOurMaps) {
 }
 
 TEST_F(GdalClientsTest, TheOgcApiClientReadsOurTiles) {
-  // GDAL 3.6 takes the bounds of a collection for metres, so it is told those of the world.
+  // GDAL 3.6 reads the bounds of a collection as metres, so the options set the bounds of the
+  // world.
   const std::string options =
       "-oo API=TILES -oo TILEMATRIXSET=WebMercatorQuad -oo MINX=-20037508.342789244 -oo "
       "MINY=-20037508.342789244 "
       "-oo MAXX=20037508.342789244 -oo MAXY=20037508.342789244";
-  for (const int zoom : {1, 3}) {  // at 3, the layer has neither the first rows nor the last
+  for (const int zoom : {1, 3}) {  // at 3, the layer has neither the first nor the last rows
     const Picture picture = world("OGCAPI:" + url_ + "/ogc/collections/rings", options, zoom);
     EXPECT_EQ(differences(picture, "rings", zoom), 0) << zoom;
   }

@@ -21,8 +21,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A square of the Swiss grid, 100 km wide and high; two pieces of land that meet at 180 degrees,
-/// one feature; and land around the South Pole, cut at 180 degrees as such data is.
+/// A square in the Swiss grid, 100 km wide and high; a feature of two polygons that meet at 180
+/// degrees; and land around the South Pole, cut at 180 degrees, which is usual in such data.
 constexpr const char* kSwiss = R"({"type":"FeatureCollection",
 "crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::2056"}},"features":[
 {"type":"Feature","properties":{"name":"square"},"geometry":{"type":"Polygon","coordinates":
@@ -161,7 +161,7 @@ TEST_F(GridsTest, FeaturesAreFoundWhereTheyAreDrawn) {
               HasSubstr("nothing"));
 }
 
-/// The pixels of a map around a place in degrees, with outlines.
+/// The target of a map around a place given in degrees, with outlines.
 std::string map_around(const std::string& grid, double lon, double lat, double units,
                        const std::string& layer = "seam") {
   const auto target = find_target_grid(grid);
@@ -177,7 +177,7 @@ std::string map_around(const std::string& grid, double lon, double lat, double u
       layer, grid, east - units, north - units, east + units, north + units);
 }
 
-/// Pixels that are not red.
+/// The number of pixels that are not red.
 int others_in(const Picture& map) {
   int others = 0;
   for (const Rgba& pixel : map.pixels) others += pixel != Rgba{255, 0, 0, 255};
@@ -200,7 +200,7 @@ TEST_F(GridsTest, NoLineRunsAlongTheSeam) {
   EXPECT_GT(lines, 0) << "there is no outline at all";
 }
 
-/// A cape in the east of Russia, in two pieces as sources have it.
+/// A cape in the east of Russia, in two polygons as sources have it.
 constexpr const char* kCape = R"({"type":"FeatureCollection","features":[
 {"type":"Feature","properties":{"name":"cape"},"geometry":{"type":"MultiPolygon","coordinates":
 [[[[170,62],[175,64],[180,65.2],[180,69],[171,70],[160,69],[170,62]]],
@@ -215,7 +215,7 @@ TEST_F(GridsTest, WhatCrossesTheAntimeridianIsWholeInEqualAreas) {
     const std::string target = map_around("EPSG:3571", 180, lat, 10'000, "cape");
     EXPECT_EQ(others_in(picture(target)), 0) << target;
   }
-  // From one end of it to the other it is one piece, and there is sea around it.
+  // The cape is one piece from end to end, with sea around it.
   for (double lon = 166; lon < 188; lon += 1) {
     const Picture map = picture(map_around("EPSG:3571", lon, 67, 2'000, "cape"));
     EXPECT_EQ(map.at(100, 100), (Rgba{255, 0, 0, 255})) << lon;
@@ -225,13 +225,14 @@ TEST_F(GridsTest, WhatCrossesTheAntimeridianIsWholeInEqualAreas) {
   }
 }
 
-/// A tile of a set of config/tile_matrix_sets, in whose system a source has a square.
+/// A tile of a set in config/tile_matrix_sets, for a source with a square in the same reference
+/// system.
 struct Survey {
   const char* file;
   const char* set;
   int code;
   const char* matrix;
-  double west;  // of the matrix, as the set has it
+  double west;  // of the matrix, as in the set
   double north;
   double cell;
   int column;
@@ -246,7 +247,7 @@ TEST_F(GridsTest, TilesOfTheSurveysOfOtherCountriesAreWhereTheyShouldBe) {
        286},
   };
   for (const Survey& survey : surveys) {
-    // From pixel 64 to 192 of the tile, in both directions.
+    // The square covers pixels 64 to 192 of the tile in both directions.
     const double west = survey.west + (survey.column * 256 + 64) * survey.cell;
     const double north = survey.north - (survey.row * 256 + 64) * survey.cell;
     const double east = west + 128 * survey.cell;

@@ -32,7 +32,7 @@ class LegendTest : public ::testing::Test {
     return decode_png(*response.body);
   }
 
-  /// The pixels of the swatch in a row of the picture, from the north-west.
+  /// The pixels of the swatch in a row of the picture, starting in the north-west.
   static std::vector<Rgba> swatch(const Picture& picture, int row, int scale = 1) {
     std::vector<Rgba> pixels;
     for (int y = 0; y < 12 * scale; ++y) {
@@ -65,7 +65,7 @@ TEST_F(LegendTest, ALayerOfOneColourIsPartedFromTheClassesAboveIt) {
   const std::string classes = "?rings.color-by=name&rings.classes=small:00f";
   EXPECT_EQ(picture("/legend/rings.png").height, 16 + 12);
   EXPECT_EQ(one_colour_each, 2 * 16 + 12);
-  // A title, the class, and others; and the other layer below them.
+  // A title, the class and "others", then the other layer below them.
   const Picture parted = picture("/legend/west,rings.png" + classes);
   EXPECT_EQ(parted.height, 4 * 16 + 8 + 12);
   EXPECT_EQ(parted.at(16, 6 + 3 * 16 + 4), (Rgba{255, 255, 255, 255}));

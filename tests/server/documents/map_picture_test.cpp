@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The bbox of a tile, in metres.
+/// The bbox of a tile, or of several tiles, in metres.
 std::string bbox_of(const TileId& tile, int columns = 1, int rows = 1) {
   const auto west = static_cast<double>(tile.origin_x());
   const auto north = static_cast<double>(tile.origin_y());
@@ -161,7 +161,8 @@ TEST_F(MapPictureTest, IsStretchedToItsSize) {
   const Picture wide =
       picture("/map/rings.png?" + bbox_of(tile) + "&width=512&height=128&quality=exact");
   ASSERT_EQ(wide.height, 128);
-  // The rings have upright sides: four rows are as one of the stretched picture, in the mean.
+  // The sides of the rings are vertical: the mean of four rows equals one row of the stretched
+  // picture.
   int most = 0;
   for (int y = 0; y < 128; ++y) {
     for (int x = 0; x < 512; ++x) {
@@ -176,7 +177,7 @@ TEST_F(MapPictureTest, IsStretchedToItsSize) {
 TEST_F(MapPictureTest, TheWorldGoesOnBeyondTheAntimeridian) {
   auto layers = layers_of_files({testing::fixture("west.geojson")});
   sample_.data().set(Dataset::load(layers));
-  // "west" covers the west of the world.
+  // "west" covers the western half of the world.
   const Picture over = picture("/map/west.png?bbox=90,-40,-90,40&width=200&height=100&fill=f00");
   EXPECT_EQ(over.at(98, 50).a, 0);
   EXPECT_EQ(over.at(101, 50), (Rgba{255, 0, 0, 255}));
@@ -195,7 +196,7 @@ TEST_F(MapPictureTest, NothingShowsAlongTheSeam) {
   const std::string file = folder.write("world.geojson", R"({"type": "Polygon", "coordinates":
     [[[-180, -80], [180, -80], [180, 80], [-180, 80], [-180, -80]]]})");
   sample_.data().set(Dataset::load(layers_of_files({file})));
-  // The seam lies somewhere within a pixel.
+  // The seam is somewhere within a pixel.
   for (const char* east : {"-170.456", "-170.1", "-169.777"}) {
     const Picture over = picture(fmt::format(
         "/map/world.png?bbox=170.123,-20,{},20&width=333&height=9&fill=f00&stroke=000", east));
@@ -299,7 +300,7 @@ TEST_F(MapPictureTest, WhatIsWrongIsSaid) {
 }
 
 TEST_F(MapPictureTest, LargePicturesAreTheSameAsThoseInOnePiece) {
-  // 1025 x 1024 pixels are drawn in bands; the same rows of a lower picture are not.
+  // 1025 x 1024 pixels are drawn in bands; the same rows in a lower picture are not.
   const TileId tile{2, 1, 1};
   const Picture large = picture("/map/rings,west.png?" + bbox_of(tile) +
                                 "&width=1024&height=1024&quality=exact&stroke=000&pattern=dots");

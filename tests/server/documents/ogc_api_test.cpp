@@ -26,7 +26,7 @@ class OgcApiTest : public ::testing::Test {
     EXPECT_EQ(response.status, 200) << target;
     return nlohmann::json::parse(*response.body);
   }
-  /// What the first link of that relation leads to, as a target of this server.
+  /// The URL of the first link with that relation, as a target of this server.
   static std::string link(const nlohmann::json& document, const std::string& relation) {
     for (const auto& link : document["links"]) {
       if (link["rel"] != relation) continue;
@@ -178,7 +178,7 @@ TEST_F(OpenApiTest, DescribesEveryParameterOfTheTable) {
   EXPECT_EQ(api["components"]["parameters"]["fill-opacity"]["schema"]["maximum"], 1);
 }
 
-/// Every {name} of the path.
+/// Every {name} in the path.
 std::set<std::string> templates_of(const std::string& path) {
   std::set<std::string> names;
   for (std::size_t open = path.find('{'); open != std::string::npos;

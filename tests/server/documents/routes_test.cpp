@@ -1,4 +1,4 @@
-// The table of routes against what the server answers and what its documents say.
+// Compares the table of routes with the server's answers and its documents.
 #include "server/documents/routes.h"
 
 #include <gmock/gmock.h>
@@ -65,7 +65,7 @@ TEST(RoutesTest, MethodsAreThoseOfThePath) {
   EXPECT_FALSE(understands("/anything", "DELETE"));
 }
 
-/// The path with something in place of what stands between braces.
+/// The path with its {placeholders} filled in.
 std::string filled_in(std::string path) {
   const std::map<std::string, std::string> values = {{"layers", "rings"},
                                                      {"z", "0"},

@@ -1,4 +1,4 @@
-// Requests to WMS and its answers, in both versions.
+// WMS requests and answers, in both versions.
 #include "server/documents/wms.h"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// A tile of zoom 3 in which a corner of the rings is.
+/// A tile of zoom 3 that contains a corner of the rings.
 constexpr const char* kBox = "BBOX=-5009377.085697311,0,0,5009377.085697311";
 const std::string kMap = std::string(
                              "/wms?SERVICE=WMS&VERSION=1.3.0&REQUEST=GetMap&LAYERS=rings&STYLES=&"
@@ -34,7 +34,7 @@ const std::string kOldMap = std::string(
                                 "STYLES=&SRS=EPSG:3857&WIDTH=256&HEIGHT=256&FORMAT=image/png&") +
                             kBox;
 
-/// A target with something else in it.
+/// The target with one part replaced.
 std::string changed(std::string target, const std::string& from, const std::string& to) {
   const std::size_t at = target.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -322,7 +322,7 @@ TEST_F(WmsTest, WhatIsWrongIsToldInThePictureIfThatIsAskedFor) {
   const Picture clear = picture(bad + "&EXCEPTIONS=BLANK&TRANSPARENT=TRUE");
   EXPECT_EQ(clear.at(0, 0).a, 0);
   EXPECT_EQ(sample_.get(bad + "&EXCEPTIONS=BLANK").header("Cache-Control"), "no-store");
-  // Of no size, or of one that is too large, there is no picture.
+  // Sizes that are zero, too large or not numbers give no picture.
   for (const char* width : {"WIDTH=0", "WIDTH=16384", "WIDTH=x"}) {
     const auto response =
         sample_.get(changed(bad, "WIDTH=256", width) + "&HEIGHT=256&" + "EXCEPTIONS=INIMAGE");

@@ -19,7 +19,7 @@ const std::string kTile =
     "/wmts?SERVICE=WMTS&REQUEST=GetTile&VERSION=1.0.0&LAYER=rings&STYLE=default"
     "&FORMAT=image/png&TILEMATRIXSET=WebMercatorQuad&TILEMATRIX=3&TILEROW=2&TILECOL=5";
 
-/// A target with something else in it.
+/// The target with one part replaced.
 std::string changed(std::string target, const std::string& from, const std::string& to) {
   return target.replace(target.find(from), from.size(), to);
 }
@@ -117,7 +117,8 @@ TEST_F(WmtsTest, UnknownKeysArePassedOverUnlessAStyleIsMeant) {
 }
 
 TEST_F(WmtsTest, FeaturesUnderAPixelAreTold) {
-  // At zoom 0, the pixels 64 to 192 but not the hole from 96 to 160; an island from 112 to 144.
+  // At zoom 0, the rings cover pixels 64 to 192 except the hole from 96 to 160, with an island from
+  // 112 to 144.
   const auto at = [](int i, int j) {
     return "/wmts/rings/default/WebMercatorQuad/0/0/0/" + std::to_string(j) + "/" +
            std::to_string(i) + ".json";

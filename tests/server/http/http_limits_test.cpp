@@ -1,4 +1,4 @@
-// Limits of the server, and clients that keep to no rules.
+// Limits of the server, and clients that break the rules.
 #include <gmock/gmock.h>
 
 #include <cstdio>
@@ -30,7 +30,7 @@ using testing::RunningServer;
 constexpr const char* kTile = "/tiles/rings/0/0/0.png";
 constexpr std::size_t kHostileRequests = 10'000;
 
-/// Whatever the client that connects next gets without having asked for anything.
+/// The response that the next client gets when it connects and sends nothing.
 RawResponse greeting(std::uint16_t port, const std::string& from) {
   return RawClient(port, from).receive();
 }
@@ -248,7 +248,7 @@ TEST(HttpLimitsTest, ABodyOfWhichNobodyKnowsTheEndIsNotTheNextRequest) {
   EXPECT_EQ(client.receive().status, 200);
 }
 
-/// A server that takes long bodies at /values only.
+/// A server that accepts long bodies at /values only.
 HttpServerOptions with_long_bodies() {
   HttpServerOptions options;
   options.body_limit = 100;
@@ -287,7 +287,7 @@ TEST(HttpLimitsTest, OnlyTablesMayBeLong) {
   EXPECT_EQ(long_style.status, 413);
   EXPECT_THAT(long_style.body, HasSubstr("100 bytes"));
   EXPECT_EQ(answer_to(post("/values/x", table_of(4000))).status, 413);
-  // In chunks, whose length nobody knows beforehand.
+  // In chunks, whose total length is not known in advance.
   const std::string table = table_of(4000);
   const std::string head = "POST /values HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n";
   std::string chunks;
@@ -305,7 +305,7 @@ TEST(HttpLimitsTest, OnlyTablesMayBeLong) {
 TEST(HttpLimitsTest, ThereIsRoomForAFewLongBodiesAtOnce) {
   RunningServer server(with_long_bodies());
   const std::string request = post("/values", table_of(4000));
-  // Three of one address are on their way, and do not come to an end.
+  // Three requests from one address have begun and do not end.
   std::vector<std::unique_ptr<RawClient>> slow;
   for (int i = 0; i < 3; ++i) {
     slow.push_back(std::make_unique<RawClient>(server.port()));
@@ -392,7 +392,7 @@ TEST(HostileRequestsTest, NothingOutsideTheFolderOfTheViewerIsServed) {
   std::filesystem::remove_all(folder);
 }
 
-/// The status codes of all answers in the bytes that a connection gave.
+/// The status codes of all responses in the bytes received over a connection.
 std::vector<int> statuses_in(const std::string& bytes) {
   static const std::regex line("HTTP/1\\.[01] ([0-9]{3}) ");
   std::vector<int> statuses;
@@ -416,8 +416,8 @@ TEST(HostileRequestsTest, TenThousandHarmNobody) {
     client.end_sending();
     for (const int status : statuses_in(client.receive_all())) {
       ++counts[status];
-      if (status == 100) continue;  // it may send its body
-      // 501 is what WMTS wants of operations that there are not.
+      if (status == 100) continue;  // the client may send its body
+      // 501 is the status that WMTS requires for unsupported operations.
       EXPECT_TRUE((status >= 200 && status < 500) || status == 501)
           << status << ": seed " << seed << ", request " << i << ": " << requests[i].substr(0, 500);
     }

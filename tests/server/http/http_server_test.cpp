@@ -58,7 +58,8 @@ TEST_F(HttpServerTest, ServesSeveralRequestsOverOneConnection) {
   EXPECT_EQ(client.get("/tiles/rings/0/0/0.png").body, tile.body);
 }
 
-/// A server whose answers wait until the client has gone or they are let.
+/// A server that holds its answers back until the test releases them or the client has
+/// disconnected.
 class DisconnectionTest : public ::testing::Test {
  protected:
   DisconnectionTest()
@@ -116,7 +117,7 @@ TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
   start();
   RawClient client(port());
   std::string requests;
-  // The tiles take a worker's time, the others none: all the same they must not overtake.
+  // Tiles take a worker's time and the other requests take none; answers still must not overtake.
   for (int x = 0; x < 8; ++x) {
     requests += "GET /tiles/rings/3/" + std::to_string(x) + "/4.png HTTP/1.1\r\nHost: a\r\n\r\n";
     requests += "GET /nosuch" + std::to_string(x) + " HTTP/1.1\r\nHost: a\r\n\r\n";
@@ -192,7 +193,7 @@ TEST_F(HttpServerTest, AClientThatAsksMaySendItsBody) {
   EXPECT_EQ(client.receive(true).status, 100);
   client.send(style);
   EXPECT_EQ(client.receive().status, 201);
-  // Too much is refused before it is sent.
+  // A body that is too long is refused before it is sent.
   client.send(header + "2000000\r\n\r\n");
   EXPECT_EQ(client.receive().status, 413);
 }
@@ -252,7 +253,7 @@ TEST_F(HttpServerTest, SlowAndSilentClientsAreLetGo) {
   RawClient silent(port());
   RawClient slow(port());
   slow.send("GET /health HT");
-  // One byte now and then does not buy more time: the limit is for the request as a whole.
+  // A byte now and then does not extend the time: the limit applies to the request as a whole.
   for (int i = 0; i < 5; ++i) {
     std::this_thread::sleep_for(100ms);
     slow.send("T");
@@ -262,7 +263,7 @@ TEST_F(HttpServerTest, SlowAndSilentClientsAreLetGo) {
 }
 
 TEST_F(HttpServerTest, AClientThatReadsNothingIsLetGo) {
-  // More than the buffers between the two can hold: so writing must stall.
+  // More than the buffers between the two can hold, so that writing stalls.
   constexpr std::size_t kSize = std::size_t{30} << 20;
   const std::string root = ::testing::TempDir() + "/http_server_test_root";
   std::filesystem::create_directories(root);
@@ -295,7 +296,7 @@ TEST_F(HttpServerTest, ConnectionsBeyondTheLimitAreTurnedAway) {
     EXPECT_EQ(refused.headers.at("retry-after"), "1");
   }
   EXPECT_EQ(first.get("/health").status, 200);
-  // Those that left make room again.
+  // Clients that disconnect make room again.
   int status = 503;
   for (int attempt = 0; attempt < 100 && status == 503; ++attempt) {
     std::this_thread::sleep_for(50ms);

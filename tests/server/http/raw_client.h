@@ -1,5 +1,4 @@
-// A blocking HTTP client that sends exactly the bytes it is told to, and gives up after ten
-// seconds.
+// A blocking HTTP client that sends exactly the given bytes and gives up after ten seconds.
 #pragma once
 
 #include <chrono>
@@ -26,16 +25,16 @@ class RawClient {
   RawClient& operator=(const RawClient&) = delete;
 
   void send(std::string_view bytes) const;
-  /// Says that nothing more will be sent.
+  /// Signals the end of the request stream.
   void end_sending() const;
-  /// Reads one response; `is_head`: it has no body whatever its length says. Throws
+  /// Reads one response; with `is_head` it has no body, whatever its length header. Throws
   /// std::runtime_error if the connection ends before the response does.
   RawResponse receive(bool is_head = false);
-  /// GET over this connection.
+  /// Sends a GET request over this connection and returns the response.
   RawResponse get(const std::string& target, const std::string& more_headers = {});
-  /// Reads until the connection ends, or nothing comes for ten seconds; what was read.
+  /// Reads until the connection ends, or nothing arrives for ten seconds; returns the bytes read.
   std::string receive_all();
-  /// Whether the server has closed the connection, or does so within `patience`.
+  /// Whether the server has closed the connection, or closes it within `patience`.
   bool is_closed_within(std::chrono::milliseconds patience);
 
  private:

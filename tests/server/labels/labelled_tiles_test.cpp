@@ -1,4 +1,5 @@
-// Labels in tiles: whole across borders, the same at all scales, and in all that is served.
+// Labels in tiles: complete across tile borders, the same at all scales, and present in everything
+// that is served.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spdlog/fmt/fmt.h>
@@ -63,7 +64,7 @@ class LabelledTilesTest : public ::testing::Test {
   }
 };
 
-// Where two tiles meet, both have every label that reaches over the border, at the same pixels.
+// Two neighbouring tiles both contain every label that crosses their border, at the same pixels.
 TEST_F(LabelledTilesTest, NeighboursShowTheSameLabels) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -113,7 +114,7 @@ TEST_F(LabelledTilesTest, WhatIsShownIsShownAtAllLargerScales) {
     std::size_t most = 0;
     for (double zoom = 0; zoom <= 11; zoom += 0.25) {
       TilePlan plan = plan_of("land/0/0/0.png?" + style);
-      // The whole world at that zoom: more than anybody would draw.
+      // The whole world at that zoom, a larger picture than any request.
       plan.view.cells_per_pixel = std::exp2(23 - zoom);
       plan.view.width = plan.view.height = static_cast<int>(std::exp2(8 + zoom));
       const std::vector<LabelPlace> now = label_places(plan, plan.view);
@@ -128,7 +129,7 @@ TEST_F(LabelledTilesTest, WhatIsShownIsShownAtAllLargerScales) {
   }
 }
 
-/// The pixels of two pictures that differ.
+/// The number of pixels that differ between two pictures.
 std::size_t differences(const Picture& a, const Picture& b, int column_of_a, int column_of_b,
                         int columns) {
   std::size_t count = 0;
@@ -141,7 +142,7 @@ std::size_t differences(const Picture& a, const Picture& b, int column_of_a, int
 }
 
 TEST_F(LabelledTilesTest, ALabelLooksTheSameFromBothSidesOfABorder) {
-  // A picture of labels alone, on nothing.
+  // A picture with only the labels, on a transparent background.
   const auto draw = [](const TilePlan& plan) {
     Picture blank{plan.view.width, plan.view.height,
                   std::vector<Rgba>(static_cast<std::size_t>(plan.view.width) *
@@ -190,7 +191,7 @@ TEST_F(LabelledTilesTest, LabelsDoNotOverlap) {
   }
 }
 
-// The oracle of pictures holds for what lies around labels.
+// The oracle of pictures applies to the pixels around labels.
 TEST_F(LabelledTilesTest, AroundLabelsATileIsWhatItIsWithoutThem) {
   TilePainter painter = testing::software_painter();
   const auto paint = [&painter](const TilePlan& plan) {

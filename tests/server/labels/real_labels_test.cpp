@@ -1,7 +1,7 @@
-// Labels of real layers, at places and scales by chance.
+// Labels of real layers, at random places and scales.
 //
-// TRAPEZE_LABEL_PAIRS says how many pairs of neighbouring tiles are looked at, instead of kPairs;
-// a million take minutes.
+// TRAPEZE_LABEL_PAIRS sets the number of pairs of neighbouring tiles to test instead of kPairs; a
+// million takes minutes.
 #include <gtest/gtest.h>
 #include <spdlog/fmt/fmt.h>
 
@@ -83,7 +83,7 @@ class RealLabelsTest : public ::testing::TestWithParam<File> {
   std::shared_ptr<const Dataset> dataset_;
 };
 
-/// Whether two labels, with their halos, have a pixel in common.
+/// Whether two labels, with their halos, share a pixel.
 bool overlap(const SeenLabel& a, const SeenLabel& b) {
   const TextMask& one = a.image->mask();
   const TextMask& other = b.image->mask();
@@ -106,7 +106,7 @@ bool overlap(const SeenLabel& a, const SeenLabel& b) {
 void expect_none_over_another(const std::set<SeenLabel>& labels) {
   for (auto a = labels.begin(); a != labels.end(); ++a) {
     for (auto b = std::next(a); b != labels.end(); ++b) {
-      if (b->left >= a->left + a->image->mask().width) break;  // in order from west to east
+      if (b->left >= a->left + a->image->mask().width) break;  // they are sorted from west to east
       EXPECT_FALSE(overlap(*a, *b));
     }
   }
@@ -200,9 +200,9 @@ TEST_P(RealLabelsTest, GoOnBeingShownWhileOneZoomsIn) {
   EXPECT_GT(labels, static_cast<std::size_t>(places));
 }
 
-// ---- which are shown, and where
+// ---- which labels are shown, and where
 
-/// Candidates as wide as their names in a font of the usual size, in order of the areas.
+/// Candidates as wide as their names in a font of the usual size, sorted by area.
 struct Candidates {
   std::vector<LabelCandidate> all;
   std::vector<LabelAnchor> anchors;  // by number of the candidate
@@ -241,7 +241,7 @@ Candidates candidates_of(const Layer& layer, const char* attribute) {
   return made;
 }
 
-// What is shown already stays, and so may keep others away that a picture by itself would show.
+// A label that is shown already stays, and so may displace labels that a single picture would show.
 TEST_P(RealLabelsTest, AreAboutAsManyAsFitIntoAWindowByItself) {
   const Candidates made = candidates_of(layer(), GetParam().attribute);
   const LabelPlacement placement(made.all, static_cast<double>(kGridSize));
@@ -281,7 +281,7 @@ TEST_P(RealLabelsTest, AreAboutAsManyAsFitIntoAWindowByItself) {
   EXPECT_GE(share, 0.95);
 }
 
-/// Whether a place is within the large rings of an outline, by even-odd.
+/// Whether a place is inside the large rings of an outline, by the even-odd rule.
 bool lies_in(double x, double y, const Rings& rings, double least_area) {
   bool is_inside = false;
   for (std::size_t i = 0; i < rings.size(); ++i) {

@@ -1,4 +1,4 @@
-// Labels as pictures of a plan have them, by where they are in the world.
+// The labels in the pictures of a plan, identified by their position in the world.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace trapeze::testing {
 
-/// A label as every picture of that scale has it.
+/// A label with the position that it has in every picture of that scale.
 struct SeenLabel {
   std::int64_t left = 0;  // in pixels from the middle of the world
   std::int64_t top = 0;
@@ -39,7 +39,7 @@ inline std::set<SeenLabel> labels_in(const TilePlan& plan, const View& view, dou
   return seen;
 }
 
-/// A label by its middle, in cells, whatever the scale.
+/// A label with its centre in cells, which does not depend on the scale.
 struct LabelPlace {
   double x = 0;
   double y = 0;
@@ -59,7 +59,7 @@ inline std::vector<LabelPlace> label_places(const TilePlan& plan, const View& vi
   return places;
 }
 
-/// Whether the same label is there, less than that many cells away in either direction.
+/// Whether the same label is in `places`, less than `within` cells away in either direction.
 inline bool is_among(const LabelPlace& wanted, const std::vector<LabelPlace>& places,
                      double within) {
   return std::ranges::any_of(places, [&](const LabelPlace& place) {

@@ -1,4 +1,4 @@
-// Archives as their readers meet them.
+// Archives as other programs read them.
 #include "server/seed/archive.h"
 
 #include <gmock/gmock.h>
@@ -45,12 +45,12 @@ ArchiveDescription description(ZoomRange zooms) {
   return d;
 }
 
-/// What a seeding on `threads` threads writes, in parts, or going on after it was stopped.
+/// The output of a seeding: on `threads` threads, in parts, or resumed after it was stopped.
 class Seeding {
  public:
   Seeding(const SeedPlan& plan, ZoomRange zooms) : plan_(plan), zooms_(zooms) {
     KnownTiles known(plan, TilePainter::new_class_cache(), std::make_shared<LabelBook>());
-    constexpr double kTilesOfJob = 24;  // so that there are many
+    constexpr double kTilesOfJob = 24;  // so that there are many jobs
     jobs_ = divide_into_jobs(plan, known, kTilesOfJob);
   }
 
@@ -69,7 +69,7 @@ class Seeding {
     return {plan_.identity("software"), jobs_.jobs.size(), jobs_of_part(jobs_, part), part,
             description(zooms_)};
   }
-  /// Of the last run.
+  /// Progress of the last run.
   const SeedProgress& progress() const { return progress_; }
 
  private:

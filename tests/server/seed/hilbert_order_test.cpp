@@ -12,7 +12,7 @@ std::uint64_t id_of(const TileId& tile) {
 }
 
 TEST(HilbertOrderTest, NumbersTilesAsTheSpecificationOfPmtilesDoes) {
-  // The table of the specification.
+  // The table in the specification.
   EXPECT_EQ(id_of({0, 0, 0}), 0u);
   EXPECT_EQ(id_of({1, 0, 0}), 1u);
   EXPECT_EQ(id_of({1, 0, 1}), 2u);

@@ -13,7 +13,7 @@ namespace {
 using testing::seed_request;
 using testing::SeededTiles;
 
-/// All that may be drawn beyond a polygon, or otherwise within it.
+/// Styles that draw beyond a polygon's boundary, or differently inside it.
 const std::vector<std::string> kStyles = {
     "",
     "fill-opacity=0.4",
@@ -88,7 +88,8 @@ TEST(KnownTilesTest, MostTilesAreNotLookedAt) {
   const auto dataset = testing::sample_dataset();
   const auto plan = SeedPlan::make(seed_request(*dataset, {0, 9}, "stroke=black"), dataset);
   const SeededTiles seeded(*plan);
-  // Only boundaries are: squares of some thousand tiles' sides.
+  // Only tiles along boundaries are drawn: the sides of the squares pass through some thousand
+  // tiles.
   EXPECT_LT(seeded.figures().drawn + seeded.figures().alone, plan->count() / 40);
   EXPECT_GT(seeded.figures().drawn, 1000u);
   EXPECT_LT(seeded.figures().alone, seeded.figures().drawn / 10);

@@ -1,4 +1,4 @@
-// Reads PMTiles 3 as its specification says, with none of the code that writes it but gunzip().
+// Reads PMTiles 3 according to its specification, sharing no code with the writer except gunzip().
 #pragma once
 
 #include <cstdint>
@@ -76,7 +76,7 @@ class PmtilesReader {
     return entries;
   }
 
-  /// Those of tiles, in order.
+  /// The entries of tiles, in order.
   std::vector<Entry> entries() const {
     std::vector<Entry> all;
     for (const Entry& entry : directory(root_offset(), root_length())) {

@@ -1,4 +1,4 @@
-// Tiles of real layers that are known without drawing are those that are drawn.
+// Tiles of real layers that are known without drawing equal the tiles that are drawn.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace trapeze {
 namespace {
 
-/// The last zoom at which a box of that width, in degrees, is no wider than a tile.
+/// The last zoom at which a box `degrees` wide is no wider than a tile.
 int zoom_of_width(double degrees) {
   constexpr double kAround = 360;
   return std::clamp(static_cast<int>(std::floor(std::log2(kAround / degrees))), 0, kMaxZoom);

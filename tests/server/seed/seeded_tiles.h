@@ -1,4 +1,4 @@
-// Seedings of tests, drawn in plain C++ on one thread.
+// Seedings for tests, drawn in plain C++ on one thread.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,14 +36,14 @@ inline TilePainter software_painter() {
                      std::make_shared<const Fonts>(), label_book());
 }
 
-/// What the server answers with.
+/// The bytes that the server answers with.
 inline std::string served_bytes(const SeedPlan& plan, const TileId& tile, TilePainter& painter) {
   const TilePlan of_tile = plan.plan_of(tile);
   const PaintJob job{&of_tile};
   return *painter.paint({&job, 1}).front().value().bytes;
 }
 
-/// A seeding, kept in memory.
+/// A seeding that is kept in memory.
 class SeededTiles {
  public:
   explicit SeededTiles(const SeedPlan& plan) : plan_(plan) {
@@ -84,7 +84,7 @@ class SeededTiles {
   SeedFigures figures_;
 };
 
-/// All tiles that are wanted are there, in order and once each, with the bytes of the server.
+/// Expects every tile of the plan, in order and once each, with the bytes of the server.
 inline void expect_served_bytes(const SeedPlan& plan) {
   const SeededTiles seeded(plan);
   TilePainter painter = software_painter();

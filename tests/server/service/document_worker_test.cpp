@@ -17,7 +17,7 @@ namespace {
 
 class DocumentWorkerTest : public ::testing::Test {
  protected:
-  /// A document that can only be made once the gate is open.
+  /// Orders a document that is made only once the gate is open.
   std::future<DocumentWorker::Answer> order(const std::string& key, const std::string& text) {
     return submit(key, [this, text]() -> Result<Document> {
       ++made_;

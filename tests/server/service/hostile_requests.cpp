@@ -16,11 +16,11 @@ std::string get(const std::string& target, const std::string& more = {}) {
   return "GET " + target + " HTTP/1.1\r\nHost: a\r\n" + more + "\r\n";
 }
 
-/// What is wrong with more than the target.
+/// Messages that are wrong in other places than the target alone.
 std::vector<std::string> hostile_messages() {
   const std::string tile = "/tiles/rings/0/0/0.png";
   return {
-      // No HTTP at all.
+      // Not HTTP at all.
       "\r\n\r\n"s,
       "\0\0\0\0\r\n\r\n"s,
       "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03"s,
@@ -41,7 +41,7 @@ std::vector<std::string> hostile_messages() {
       "G\xc3\x84T / HTTP/1.1\r\nHost: a\r\n\r\n"s,
       std::string(5'000, 'G') + " / HTTP/1.1\r\nHost: a\r\n\r\n",
       "POST " + tile + " HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\n\r\nfill",
-      // Where a request ends: what smugglers play with.
+      // The end of a request, which request smuggling exploits.
       "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\nTransfer-Encoding: "
       "chunked\r\n\r\n0\r\n\r\nGET "
       "/health HTTP/1.1\r\nHost: a\r\n\r\n"s,
@@ -94,7 +94,7 @@ std::vector<std::string> hostile_messages() {
       "GET http://evil.example/catalog HTTP/1.1\r\nHost: a\r\n\r\n"s,
       "GET https://evil.example HTTP/1.1\r\nHost: a\r\n\r\n"s,
       "GET //evil.example/catalog HTTP/1.1\r\nHost: a\r\n\r\n"s,
-      // Several at once.
+      // Several requests in one message.
       get(tile) + get("/nosuch") + "garbage\r\n\r\n",
       get("/health") + "\r\n\r\n" + get("/health"),
       get(tile) + "GET /tiles/rings/1/0/0.png HT",
@@ -145,7 +145,7 @@ void mutate(std::string& request, Random& random) {
 
 const std::vector<std::string>& hostile_targets() {
   static const std::vector<std::string> targets = {
-      // Ways out of the folder of the viewer.
+      // Paths out of the viewer's folder.
       "/../../../../etc/passwd",
       "/..%2f..%2f..%2fetc%2fpasswd",
       "/%2e%2e/%2e%2e/etc/passwd",
@@ -163,7 +163,7 @@ const std::vector<std::string>& hostile_targets() {
       "/index.html/",
       "/tiles/../index.html",
       "/%2f%2f",
-      // Tiles that are none.
+      // Malformed tile addresses.
       "/tiles/rings/0/0/0.png/",
       "/tiles//0/0/0.png",
       "/tiles/rings/0/0/.png",
@@ -189,7 +189,7 @@ const std::vector<std::string>& hostile_targets() {
       "/tiles/r\xc3\xadngs/0/0/0.png",
       "/tiles/a,b,c,d,e,f,g,h,i,j,k,l,m,n,o,p,q,r,s,t/0/0/0.png",
       "/tiles/" + std::string(3'000, 'a') + "/0/0/0.png",
-      // Styles that are none.
+      // Malformed styles.
       "/tiles/rings/0/0/0.png?fill",
       "/tiles/rings/0/0/0.png?fill=",
       "/tiles/rings/0/0/0.png?fill=%23%23",

@@ -1,4 +1,4 @@
-// Requests that nobody sends in good faith: by hand, and made from them by chance.
+// Hostile requests: written by hand, and random mutations of these.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@
 
 namespace trapeze::testing {
 
-/// Targets that try to reach what they should not, or to confuse who reads them.
+/// Targets that try to reach something forbidden or to confuse the parser.
 const std::vector<std::string>& hostile_targets();
 
-/// Bytes of whole requests, or what pretends to be: those made by hand first, then mutations of
-/// them, equal for equal seeds. At least as many as were made by hand.
+/// The bytes of whole requests, valid or not: first those written by hand, then mutations of them,
+/// which are the same for the same seed. At least as many as were written by hand.
 std::vector<std::string> hostile_requests(std::size_t count, std::uint64_t seed);
 
 }  // namespace trapeze::testing

@@ -30,7 +30,7 @@ std::shared_ptr<const LineFile> open_lines(const std::string& path) {
   return std::make_shared<LineFile>(path);
 }
 
-/// What a writer tells.
+/// The events that a writer reports.
 struct Told {
   std::uint64_t lost = 0;
   int times = 0;
@@ -86,7 +86,7 @@ TEST(LineWriterTest, NobodyWaitsForAPipeThatIsNotReadAndWhatIsLostIsCountedAndTo
   {
     LineWriter writer(open_lines(pipe), told.events());
     for (std::size_t i = 0; i < kLines; ++i) writer.write(std::string(1000, 'x'));
-    // Only now somebody reads.
+    // Reading begins only now.
     std::string piece(1 << 16, '\0');
     for (int idle = 0; idle < 100;) {
       const ssize_t bytes = ::read(reader, piece.data(), piece.size());
@@ -95,7 +95,7 @@ TEST(LineWriterTest, NobodyWaitsForAPipeThatIsNotReadAndWhatIsLostIsCountedAndTo
       idle = bytes > 0 ? 0 : idle + (told.times > 0 ? 100 : 0);
     }
   }
-  // What was written when the writer ended.
+  // Lines written when the writer was destroyed.
   std::string rest(1 << 20, '\0');
   const ssize_t bytes = ::read(reader, rest.data(), rest.size());
   if (bytes > 0) read.append(rest.data(), static_cast<std::size_t>(bytes));

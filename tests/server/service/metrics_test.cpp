@@ -34,7 +34,7 @@ void count(Metrics& metrics, const std::string& target, int status, double secon
   metrics.count(Answered{request, response, std::chrono::duration<double>(seconds), 11, {}, {}});
 }
 
-/// Samples by name with labels. Fails for a line that is not of the text format.
+/// Samples by name with labels. Fails on a line that does not follow the text format.
 std::map<std::string, double> samples_of(const std::string& text) {
   const std::regex sample(
       R"(([a-z_]+(\{[a-z]+="([^"\\]|\\.)*"(,[a-z]+="([^"\\]|\\.)*")*\})?) ([-+0-9.einfNa]+))");

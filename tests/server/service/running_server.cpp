@@ -14,7 +14,7 @@ RunningServer::RunningServer(HttpServerOptions options, SiteOptions site, Static
 }
 
 RunningServer::~RunningServer() {
-  for (int i = 0; i < 3; ++i) server_->stop();  // at once
+  for (int i = 0; i < 3; ++i) server_->stop();  // repeated calls do no harm
   thread_.join();
 }
 

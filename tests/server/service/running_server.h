@@ -1,4 +1,4 @@
-// A server over the fixtures on a port of its own, in a thread of the test.
+// A server over the fixtures, on its own port and in a thread of the test.
 #pragma once
 
 #include <cstdint>

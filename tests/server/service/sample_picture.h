@@ -1,4 +1,4 @@
-// Pictures that a SampleSite answers with.
+// Decodes pictures that a SampleSite answers with.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace trapeze::testing {
 
-/// The picture at that target, which is expected to be there; an empty one if it is not.
+/// The picture at that target; a missing one fails the test and gives an empty picture.
 inline Picture picture_of(SampleSite& site, const std::string& target) {
   const HttpResponse response = site.get(target);
   EXPECT_EQ(response.status, 200) << target << " " << (response.body ? *response.body : "");

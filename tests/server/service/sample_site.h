@@ -1,4 +1,4 @@
-// A site over the fixtures, without a socket, drawn by the software renderer.
+// A site over the fixtures, without a socket, drawn with the software renderer.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,14 @@ namespace trapeze::testing {
 
 std::string fixture(const std::string& name);
 
-/// A style for all layers, from a query.
+/// A style for all layers, parsed from a query.
 StyleQuery style_of(const std::string& query);
 
-/// Two layers. In a tile of zoom 0, "rings" covers pixels 64 to 192 in both directions, but not
-/// the hole from 96 to 160, in which there is an island from 112 to 144; "west" covers the columns
-/// 0 to 128.
+/// Two layers. In a tile of zoom 0, "rings" covers pixels 64 to 192 in both directions except the
+/// hole from 96 to 160, which contains an island from 112 to 144; "west" covers columns 0 to 128.
 std::shared_ptr<const Dataset> sample_dataset();
 
-/// Labels in the fonts that are installed; the same for all.
+/// Labels in the installed fonts; always the same instance.
 std::shared_ptr<LabelBook> label_book();
 
 class SampleSite {
@@ -30,11 +29,11 @@ class SampleSite {
   explicit SampleSite(bool is_loaded = true, StaticFiles files = {}, SiteOptions options = {});
 
   Site& site() { return site_; }
-  /// The site for a server.
+  /// The site as the handler of a server.
   Handler handler();
   CurrentDataset& data() { return data_; }
 
-  /// The response to a GET, waited for.
+  /// Sends a GET request and waits for the response.
   HttpResponse get(const std::string& target, const std::string& if_none_match = {});
   HttpResponse handle(const HttpRequest& request);
 

@@ -1,4 +1,4 @@
-// What becomes of a server while memory or threads cannot be had.
+// The behaviour of a server that cannot allocate memory or start threads.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ using testing::fixture;
 using ::testing::HasSubstr;
 using testing::Scarcity;
 
-/// A round island of so many vertices.
+/// A round island with `vertices` vertices.
 void write_island(const std::string& path, int vertices) {
   std::ofstream file(path);
   file << R"({"type": "Polygon", "coordinates": [[)";
@@ -56,8 +56,8 @@ class ScarceResourcesTest : public ::testing::Test {
     return holds() && !reloader_.is_loading();
   }
 
-  /// Reads the layer again while no more than so many can be had, and expects that the old one
-  /// stays if that fails. Whether it failed.
+  /// Reads the layer again while only `count` allocations or threads are available, and expects
+  /// that the old layer stays if that fails. Returns whether it failed.
   bool fails_with(Scarcity::Of what, int count, const std::string& words) {
     const auto before = data_.get();
     {
@@ -71,7 +71,7 @@ class ScarceResourcesTest : public ::testing::Test {
     return true;
   }
 
-  /// With more and more of them, until it is read.
+  /// Allows more and more of them until the layer is read.
   void expect_to_fail_well(Scarcity::Of what, const std::string& words) {
     const std::uint64_t old = data_.get()->layers()[0].revision;
     write_island(file_, 30'000);
@@ -85,7 +85,7 @@ class ScarceResourcesTest : public ::testing::Test {
     EXPECT_NE(data_.get()->layers()[0].revision, old);
   }
 
-  /// Reads the old map, as if nothing had happened.
+  /// Reads the old map as if nothing had happened.
   bool cleared_problem() {
     const std::string island = folder_.file("island");
     std::filesystem::rename(file_, island);
@@ -99,7 +99,7 @@ class ScarceResourcesTest : public ::testing::Test {
   }
 
   const TemporaryFolder folder_;
-  const std::string file_ = copy_of_map(folder_.file("map.geojson"));  // before it is read
+  const std::string file_ = copy_of_map(folder_.file("map.geojson"));  // copied before it is read
   CurrentDataset data_;
   Metrics metrics_;
   TileService tiles_{{}, make_renderers({RendererKind::software, {}}, 1).renderers};

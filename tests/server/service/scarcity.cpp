@@ -12,7 +12,7 @@
 namespace {
 
 constexpr int kAll = std::numeric_limits<int>::max();
-constexpr std::size_t kLarge = std::size_t{64} << 10;  // bytes; no library asks for so many
+constexpr std::size_t kLarge = std::size_t{64} << 10;  // bytes; no library requests so many
 
 std::atomic<int> large_arrays_left = kAll;
 std::atomic<int> threads_left = kAll;

@@ -1,10 +1,10 @@
-// Memory and threads that cannot be had: a program that links this fails the calls that ask for
-// them when it is told to, as an exhausted machine does.
+// Shortage of memory and threads: in a program that links this file, allocations and thread starts
+// fail on demand, as on an exhausted machine.
 #pragma once
 
 namespace trapeze::testing {
 
-/// Gives out so many, to all threads together, and then no more, while it lives.
+/// While it exists, grants `count` requests, over all threads together, and then refuses.
 class Scarcity {
  public:
   enum class Of { large_arrays, threads };

@@ -1,4 +1,4 @@
-// A whole server: reading layers again while it serves, and the address for those who run it.
+// A whole server: reloading layers while it serves, and the address for operators.
 #include "server/service/service.h"
 
 #include <arpa/inet.h>
@@ -77,7 +77,7 @@ class ServiceTest : public ::testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
-  /// Puts a fixture in the place of the layer's file, as one step.
+  /// Replaces the layer's file with a fixture in one step.
   void replace_file(const std::string& name) const {
     std::filesystem::copy_file(fixture(name), file_ + ".new",
                                std::filesystem::copy_options::overwrite_existing);
@@ -116,7 +116,7 @@ class ServiceTest : public ::testing::Test {
   const std::string folder_ = ::testing::TempDir() + "/service_test_" +
                               ::testing::UnitTest::GetInstance()->current_test_info()->name();
   const std::string file_ = folder_ + "/shape.geojson";
-  std::function<void()> before_reading_;  // in the thread that reads
+  std::function<void()> before_reading_;  // called in the thread that reads
   std::map<std::string, ValueTableConfig> tables_;
   Config config_;
   std::unique_ptr<Service> service_;
@@ -144,7 +144,7 @@ TEST_F(ServiceTest, TilesThatLookAsBeforeAreHeldAndKeptAfterReadingAgain) {
   replace_file("west.geojson");
   service_->reload();
   ASSERT_TRUE(holds_within(10s, [&] { return tag() != old_tile.headers.at("etag"); }));
-  // In a place that nobody asked for yet.
+  // A tile that has not been requested yet.
   const RawResponse other = get("/tiles/shape/9/509/509.png");
   EXPECT_EQ(other.headers.at("etag"), empty.headers.at("etag"));
   EXPECT_EQ(other.headers.at("x-cache"), "HIT");
@@ -196,7 +196,7 @@ TEST_F(ServiceTest, TellsWhichTilesHaveChanged) {
     std::getline(file, line);
     ASSERT_EQ(line, "shape " + tile);
   }
-  // There and back again is the same tiles, since either.
+  // After a change and its reversal the tiles are the same since either generation.
   replace_file("rings.geojson");
   service_->reload();
   ASSERT_TRUE(holds_within(10s, [&] { return generation() == first; }));
@@ -210,7 +210,7 @@ TEST_F(ServiceTest, ACommandThatDoesNotEndIsEndedWithTheServer) {
   replace_file("west.geojson");
   service_->reload();
   ASSERT_TRUE(holds_within(10s, [this] { return std::filesystem::exists(folder_ + "/began"); }));
-  stop();  // or the test does not end
+  stop();  // otherwise the test would not end
 }
 
 TEST_F(ServiceTest, ReadsItsLayersAgainWhenTheirFileHasChanged) {
@@ -239,7 +239,7 @@ TEST_F(ServiceTest, ReadsTablesOfValuesAgainWhenTheirFileHasChanged) {
   write("rank,colour\n1,2\n");
   EXPECT_TRUE(holds_within(10s, [&] { return tag_now() != before; }));
   const std::string after = tag_now();
-  // What is no table leaves the old one in place.
+  // An invalid table leaves the old one in place.
   write("rank,colour\n1,2\n1,1\n");
   EXPECT_TRUE(holds_within(10s, [this] { return tells("trapeze_data_load_failed 1"); }));
   EXPECT_EQ(tag_now(), after);
@@ -308,7 +308,7 @@ TEST_F(ServiceTest, AFileThatIsMendedWhileItsReadingFailsIsReadAgain) {
 }
 
 TEST_F(ServiceTest, UnderLoadEveryAnswerIsOldOrNewAndNoneIsLost) {
-  config_.server.cache_mb = 0;  // so that everything is drawn
+  config_.server.cache_mb = 0;  // so that every tile is drawn
   start();
   std::map<std::string, std::string> pictures;  // by tag
   pictures[tag()] = get(kTile).body;
@@ -396,7 +396,7 @@ TEST_F(ServiceTest, WritesALineForEveryRequest) {
   EXPECT_TRUE(has_tile);
 }
 
-/// Draws by software, and notes which meshes were drawn and which are to be forgotten.
+/// Draws in software, and records which meshes were drawn and which are to be forgotten.
 class NotingRenderer : public MaskRenderer {
  public:
   struct Notes {
@@ -442,7 +442,7 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   const auto replace_file = [&folder](int generation) {
     std::filesystem::copy_file(fixture("rings.geojson"), folder.file("rings.geojson"),
                                std::filesystem::copy_options::overwrite_existing);
-    // So that it has changed, however fast all this is.
+    // Guarantees a new modification time, however fast the test runs.
     std::filesystem::last_write_time(folder.file("rings.geojson"),
                                      std::filesystem::file_time_type{} + generation * 1s);
   };
@@ -452,8 +452,8 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
     rings[0].fast_topology = true;
     return rings;
   };
-  // Nothing but being told to reload wakes it: those who ask often must not keep it from tidying
-  // up.
+  // The Reloader wakes up only for reload(): frequent requests must not keep it from freeing old
+  // layers.
   Reloader reloader(
       {layers, ""}, {1h}, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
   reloader.start();

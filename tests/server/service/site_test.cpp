@@ -104,7 +104,7 @@ TEST_F(SiteTest, ScaleMultipliesThePixels) {
 }
 
 TEST_F(SiteTest, TilesOfHigherZoomsShowTheirPart) {
-  // The hole's north-west corner lies in the middle of this tile.
+  // The hole's north-west corner is in the middle of this tile.
   const Picture picture = picture_of(get("/tiles/rings/2/1/1.png"));
   EXPECT_EQ(picture.at(127, 127), kRed);
   EXPECT_EQ(picture.at(128, 128).a, 0);
@@ -201,14 +201,14 @@ TEST(SiteLimitsTest, OneAddressMayPostOnlyAShareOfTheStyles) {
 TEST_F(SiteTest, ATileIsDrawnOnceAndThenKept) {
   const auto drawn = get("/tiles/rings/0/0/0.png");
   EXPECT_EQ(drawn.header("X-Cache"), "MISS");
-  const auto kept = get("/tiles/rings/0/0/0.png?fill=f00");  // the same style, written otherwise
+  const auto kept = get("/tiles/rings/0/0/0.png?fill=f00");  // the same style in another notation
   EXPECT_EQ(kept.header("X-Cache"), "HIT");
   EXPECT_EQ(kept.body, drawn.body);
   EXPECT_EQ(kept.header("ETag"), drawn.header("ETag"));
   EXPECT_EQ(get("/tiles/rings/0/0/0.png?fill=f01").header("X-Cache"), "MISS");
 }
 
-// What a target means is remembered; only for as long as the data are the same.
+// The meaning of a target is remembered only as long as the data stays the same.
 TEST_F(SiteTest, WhatIsAskedForAgainFollowsTheData) {
   const std::string target = "/tiles/rings/0/0/0.png?fill=f02";
   const auto drawn = get(target);
@@ -233,7 +233,7 @@ TEST_F(SiteTest, WhatIsAskedForAgainFollowsTheData) {
   EXPECT_NE(*other.body, *drawn.body);
 }
 
-// A style of that name may be another one tomorrow.
+// The name may refer to another style later.
 TEST_F(SiteTest, TargetsThatNameAStyleAreNotRemembered) {
   EXPECT_TRUE(KnownTargets::may_be_known("/tiles/rings/0/0/0.png?fill=f02"));
   EXPECT_FALSE(KnownTargets::may_be_known("/tiles/rings/s/dark/0/0/0.png"));
@@ -323,8 +323,8 @@ TEST_F(SiteTest, ALargeToleranceLeavesOutWhatIsSmallerAndNoneLeavesOutNothing) {
   const Picture exact = picture_of(get("/tiles/rings/0/0/0.png?simplify=0"));
   EXPECT_EQ(exact.at(128, 100).a, 0) << "the hole";
   EXPECT_EQ(exact.at(128, 128), kRed) << "the island";
-  // A square goes as soon as half of its diagonal is within the tolerance: 23 pixels of the island,
-  // 45 of the hole, 91 of the whole.
+  // A square is removed as soon as half of its diagonal is within the tolerance: 23 pixels for the
+  // island, 45 for the hole, 91 for the whole.
   const Picture coarse = picture_of(get("/tiles/rings/0/0/0.png?simplify=64&small=drop"));
   EXPECT_EQ(coarse.at(128, 100), kRed) << "the hole is filled";
   EXPECT_EQ(coarse.at(128, 128), kRed);
@@ -350,7 +350,7 @@ TEST_F(SiteTest, ALayerIsDrawnWithoutTheTopologyTestOnlyWhereTheConfigurationAsk
   EXPECT_EQ(layers[1]["topologies"], nlohmann::json({"strict"}));
 }
 
-/// The opacities of the tile of zoom 0 with the speck, which covers a sixteenth of one pixel.
+/// The opacities in the tile of zoom 0 with the speck, which covers a sixteenth of one pixel.
 class SpeckTest : public SiteTest {
  protected:
   SpeckTest() {
@@ -487,7 +487,7 @@ TEST(SiteStyleNameTest, DocumentsKeepTheNameOfTheStyle) {
   EXPECT_EQ(item, root + "/ogc/map/tiles/WebMercatorQuad/{tileMatrix}/{tileRow}/{tileCol}" + query);
   EXPECT_EQ(json("/tiles/rings.json?style=default&fill=red")["tiles"][0],
             root + "/tiles/rings/{z}/{x}/{y}.png?fill=ff0000ff");
-  // What they lead to is what was asked for.
+  // These addresses lead to the requested style.
   EXPECT_EQ(*sample.get("/tiles/rings/s/night/0/0/0@2x.png?stroke-width=3").body,
             *sample.get("/tiles/rings/0/0/0@2x.png?fill=navy&stroke=white&stroke-width=3").body);
   EXPECT_EQ(*sample.get("/ogc/map/tiles/WebMercatorQuad/0/0/0" + query).body,
@@ -594,7 +594,7 @@ TEST_F(SiteTest, TextIsSentCompressedToWhoTakesThat) {
     ASSERT_GT(plain.body->size(), kLeastToCompress) << target;
     EXPECT_EQ(plain.header("Content-Encoding"), "");
     EXPECT_EQ(plain.header("Vary"), "Accept-Encoding") << target;
-    for (int i = 0; i < 2; ++i) {  // made, and kept
+    for (int i = 0; i < 2; ++i) {  // first made, then from the cache
       const auto gzip = get_compressed(target, "gzip");
       EXPECT_EQ(gzip.status, 200) << target;
       EXPECT_EQ(gzip.header("Content-Encoding"), "gzip") << target;

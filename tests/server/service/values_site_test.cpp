@@ -1,4 +1,4 @@
-// Tables of values over a site: posted, joined, drawn, told in legends, and given up.
+// Tables of values on a site: posted, joined, drawn, shown in legends, and discarded.
 #include <gmock/gmock.h>
 #include <spdlog/fmt/fmt.h>
 
@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 constexpr int kColumns = 8;
 
-/// Columns of 45 degrees from west to east, with the codes C0 to C7 and the numbers 0 to 7.
+/// Columns 45 degrees wide, from west to east, with the codes C0 to C7 and the numbers 0 to 7.
 std::string columns() {
   std::string features;
   for (int i = 0; i < kColumns; ++i) {
@@ -39,7 +39,7 @@ class ValuesSiteTest : public ::testing::Test {
     serve("code,people\nC0,10\nC1,20\nC2,30\nC3,40\n");
   }
 
-  /// The columns, with a table of the configuration.
+  /// Serves the columns with a table from the configuration.
   void serve(const std::string& people) {
     const std::string file = folder_.write("columns.geojson", columns());
     auto layers = layers_of_files({file});
@@ -146,7 +146,7 @@ TEST_F(ValuesSiteTest, ColoursByPostedNumbers) {
   EXPECT_NE(low, colour(query, 2));
   EXPECT_EQ(colour(query, 3), (Rgba{0, 255, 0, 255}));
   EXPECT_EQ(colour(query + "&no-data-color=blue", 3), (Rgba{0, 0, 255, 255}));
-  // The key column is called as the attribute.
+  // The key column has the name of the attribute.
   EXPECT_EQ(colour("values=" + id + "&color-by=value&breaks=4,8&ramp=Reds", 0), low);
 }
 
@@ -181,7 +181,7 @@ TEST_F(ValuesSiteTest, TellsWhatMatchesAndNamesTheFirstKeysThatDoNot) {
   EXPECT_EQ(told["joins"][0]["unmatched"], 2);
   EXPECT_EQ(told["joins"][0]["unmatched_keys"], Json({"X", "Y"}));
   EXPECT_EQ(told["joins"][0]["features_without_value"], kColumns - 2);
-  // The same later, and by the tiles that it names.
+  // The answer stays the same later, and the tiles that it names use it.
   EXPECT_EQ(json("/values/" + told["id"].get<std::string>() + "?layer=columns&join=code"), told);
   std::string tiles = told["joins"][0]["tiles"];
   tiles = tiles.substr(tiles.find('?') + 1);
@@ -225,7 +225,7 @@ TEST_F(ValuesSiteTest, PartsTheSameEverywhereAndTellsTheNumbers) {
   EXPECT_EQ(layer["entries"][2]["label"], "no data");
   EXPECT_EQ(layer["histogram"]["counts"][0], 4);
   EXPECT_EQ(json("/tiles/columns.json?" + query)["classification"]["columns"]["breaks"], Json({3}));
-  // A tile that shows C0 and C1 alone parts at the same number as one that shows all.
+  // A tile that shows only C0 and C1 has the same break as one that shows all.
   const auto part =
       decode_png(*sample_.get("/tiles/columns/1/0/0.png?quality=exact&" + query).body);
   EXPECT_EQ(part.at(32, 200), colour(query, 0));

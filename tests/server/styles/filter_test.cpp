@@ -13,7 +13,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Rows 0 to 3: name, people and height of places; of the last nothing is known.
+/// Rows 0 to 3: name, people and height of places; the last one has no values.
 FeatureTable places() {
   FeatureTable table({{"name", FieldType::text},
                       {"people", FieldType::integer},
@@ -137,8 +137,7 @@ TEST(FilterTest, TheTextReadsBackAsItself) {
 }
 
 TEST(FilterTest, NumbersBeyondExactDoublesKeepTheirText) {
-  // Between 2^53 and 10^16 a whole double is written as an integer is, which comes before any
-  // double.
+  // From 2^53 to 10^16 a whole double is written like an integer, and integers sort before doubles.
   const std::string text =
       canonical("n IN (.4,9223372039223372.37,1e17,-9223372036854775808.0,1e30)");
   EXPECT_EQ(canonical(text), text);

@@ -38,7 +38,7 @@ TEST(LikePatternTest, ABackslashTakesTheMeaning) {
   EXPECT_TRUE(fits("a\\", "a\\")) << "with nothing after it, it is itself";
 }
 
-/// Tries everything.
+/// Matches by brute force.
 bool fits_by_trying(const std::vector<std::string>& text, std::size_t t, std::string_view pattern) {
   if (pattern.empty()) return t == text.size();
   if (pattern.front() == '%') {
@@ -82,7 +82,7 @@ TEST(LikePatternTest, PartsAreAsLongAsTheyLike) {
   }
 }
 
-// With the time of the product of both lengths these would take minutes.
+// In time proportional to the product of both lengths these would take minutes.
 TEST(LikePatternTest, LongTextsTakeTimeOfTheirLength) {
   const std::string text(std::size_t{32} << 20, 'a');
   const std::string as(900, 'a');

@@ -1,4 +1,4 @@
-// Features of one layer that lie over each other, pixel by pixel.
+// Overlapping features of one layer, pixel by pixel.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -14,7 +14,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::int32_t kPixel = 1 << 23;  // cells of a pixel of the tile of zoom 0
+constexpr std::int32_t kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
 
 std::int32_t cell(double pixels) {
   return static_cast<std::int32_t>(kGridMin + pixels * kPixel);
@@ -32,9 +32,8 @@ Rings box(double west, double north, double east, double south) {
   return polygon({{west, north}, {east, north}, {east, south}, {west, south}});
 }
 
-/// With their kinds. Pixels of the tile of zoom 0, by id:
-///   1  field: columns 32.5 to 128, rows 32.5 to 128
-///   2  wood, in the field: columns 64.5 to 96.5, rows 64.5 to 96.5
+/// Kinds and rings of features. Pixels of the tile of zoom 0, by id:
+///   2  wood, inside the field: columns 64.5 to 96.5, rows 64.5 to 96.5
 ///   3  lake, over the eastern border of the field: columns 112 to 160, rows 48 to 80
 ///   4  wood: columns 32 to 96.4, rows 160 to 224
 ///   5  field, a neighbour of 4: columns 96.4 to 160, rows 160 to 224
@@ -57,7 +56,7 @@ std::vector<std::pair<std::string, Rings>> plots() {
   return plots;
 }
 
-/// So many stars of 12 points around the middle, which all of them cover.
+/// `count` stars of 12 points around the middle, which all of them cover.
 std::vector<std::pair<std::string, Rings>> stars(int count) {
   std::mt19937 random(1);
   std::vector<std::pair<std::string, Rings>> stars;
@@ -129,7 +128,7 @@ TEST_F(OverlapPicturesTest, TheLaterFeatureIsOnTop) {
   EXPECT_EQ(picture.at(80, 80), kWood);
   EXPECT_EQ(picture.at(120, 60), kLake);
   EXPECT_EQ(picture.at(150, 60), kLake);
-  // Along the border of the wood each has its share of the pixel.
+  // Along the border of the wood each kind covers its share of the pixel.
   expect_near(picture.at(64, 80), {128, 128, 0, 255}, 1);
   expect_near(picture.at(96, 96), {191, 64, 0, 255}, 1);
 }
@@ -169,14 +168,14 @@ TEST_F(OverlapPicturesTest, AHighlightedFeatureIsTopmost) {
 }
 
 TEST_F(OverlapPicturesTest, HalfOpaqueFeaturesAreLaidOverEachOther) {
-  // As QGIS and Mapnik do: of two of one colour more is seen than of one.
+  // As in QGIS and Mapnik: two translucent features of one colour are more opaque than one.
   const Picture plain = tile("fill=red&fill-opacity=0.5");
   expect_near(plain.at(50, 50), {255, 0, 0, 128}, 1);
   expect_near(plain.at(80, 80), {255, 0, 0, 191}, 1);
   const Picture classes = tile(kClasses + "&fill-opacity=0.5");
   expect_near(classes.at(50, 50), {255, 0, 0, 128}, 1);
   expect_near(classes.at(80, 80), {85, 170, 0, 191}, 1);
-  // The opacity of the layer is that of the finished layer.
+  // The opacity of a layer applies to the finished layer.
   expect_near(tile(kClasses + "&opacity=0.5").at(80, 80), {0, 255, 0, 128}, 1);
 }
 
@@ -187,15 +186,15 @@ TEST_F(OverlapPicturesTest, OutlinesAreHiddenByWhatLiesOverThem) {
     const auto is_line = [&](int column, int row) {
       return picture.at(column, row) == Rgba{0, 0, 0, 255};
     };
-    // The eastern side of the field, above the lake, below it, and where it lies under it.
+    // The eastern side of the field: above the lake, below it, and where the lake covers it.
     EXPECT_TRUE(is_line(128, 40));
     EXPECT_TRUE(is_line(128, 90));
     EXPECT_EQ(picture.at(128, 60), fill.at(128, 60));
-    // The border of two neighbours; the outline of the lake over it.
+    // The border between two neighbours; the outline of the lake over it.
     EXPECT_TRUE(is_line(96, 168));
     EXPECT_EQ(picture.at(96, 190), fill.at(96, 190));
     EXPECT_TRUE(is_line(96, 176));
-    // Of a horizontal side, too.
+    // The same for a horizontal side.
     EXPECT_TRUE(is_line(112, 60));
   }
   const Picture seen = tile("fill=red&fill-opacity=0&stroke=black&stroke-width=2");
@@ -209,7 +208,7 @@ TEST_F(OverlapPicturesTest, CostsMoreWhereTheOrderIsSeen) {
     return std::stoi(std::string(response.header("X-Tile-Cost")));
   };
   EXPECT_GT(cost_of("fill=red&fill-opacity=0.5"), cost_of("fill=red"));
-  // The more features are seen through each other, the more parts there are.
+  // The more translucent features overlap, the more parts there are.
   site_.data().set(layer_of(stars(40)));
   const int opaque = cost_of(kClasses);
   const int half = cost_of("fill=red&fill-opacity=0.5");

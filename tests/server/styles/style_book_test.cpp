@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The style of a query about the layers "land" and "water".
+/// The style that a query gives for the layers "land" and "water".
 std::string style_text(const StyleBook& book, std::vector<QueryPair> query) {
   static const std::vector<std::string> layers = {"land", "water"};
   const auto styled = book.read(std::move(query));
@@ -109,7 +109,7 @@ TEST(StyleBookTest, ALongStyleIsRefused) {
   EXPECT_EQ(answer.problem().status, 400);
 }
 
-/// A document in which each of the layers sets every long parameter in full.
+/// A document that sets every long parameter in full for each of the layers.
 nlohmann::json full_style(int layers) {
   nlohmann::json document;
   for (int layer = 0; layer < layers; ++layer) {

@@ -1,4 +1,4 @@
-// What every style parameter does to a picture, pixel by pixel where that can be said.
+// The effect of every style parameter on a picture, pixel by pixel where possible.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -16,7 +16,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::int32_t kPixel = 1 << 23;  // cells of a pixel of the tile of zoom 0
+constexpr std::int32_t kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
 
 std::int32_t cell(double pixels) {
   return static_cast<std::int32_t>(kGridMin + pixels * kPixel);
@@ -133,7 +133,7 @@ TEST_F(StylePicturesTest, FilterAndIdsLeaveTheOthersOut) {
   EXPECT_EQ(cities.at(170, 180), kGrey);
   EXPECT_EQ(cities.at(130, 60), kTransparent);
   EXPECT_EQ(cities.at(60, 160), kTransparent);
-  EXPECT_EQ(cities.at(200, 40), kTransparent);  // dust goes too
+  EXPECT_EQ(cities.at(200, 40), kTransparent);  // dust is filtered out, too
   const Picture some = tile("ids=2,3");
   EXPECT_EQ(some.at(60, 60), kTransparent);
   EXPECT_EQ(some.at(130, 60), kGrey);
@@ -146,14 +146,14 @@ TEST_F(StylePicturesTest, HighlightedFeaturesStandOut) {
   const Picture picture = tile("highlight=2&highlight-fill=red&highlight-stroke=blue&stroke=lime");
   EXPECT_EQ(picture.at(60, 60), kGrey);
   EXPECT_EQ(picture.at(130, 60), kRed);
-  expect_near(picture.at(130, 32), {64, 0, 191, 255}, 70);  // half of the line lies within
-  EXPECT_GT(picture.at(60, 32).g, 150);                     // the others' line
+  expect_near(picture.at(130, 32), {64, 0, 191, 255}, 70);  // half of the line is inside
+  EXPECT_GT(picture.at(60, 32).g, 150);                     // the outline of the others
 }
 
 TEST_F(StylePicturesTest, OutlinesFollowAllEdgesTheLevelOnesToo) {
   const Picture picture = tile("fill=none&stroke=red&stroke-width=2");
   for (int i = 33; i < 95; ++i) {
-    EXPECT_EQ(picture.at(i, 32), kRed) << i;  // from 31 to 33
+    EXPECT_EQ(picture.at(i, 32), kRed) << i;  // the line covers rows 31 to 33
     EXPECT_EQ(picture.at(i, 31), kRed) << i;
     EXPECT_EQ(picture.at(i, 95), kRed) << i;
     EXPECT_EQ(picture.at(32, i), kRed) << i;
@@ -161,7 +161,7 @@ TEST_F(StylePicturesTest, OutlinesFollowAllEdgesTheLevelOnesToo) {
     EXPECT_EQ(picture.at(i, 34), kTransparent) << i;
   }
   EXPECT_EQ(picture.at(60, 60), kTransparent);
-  EXPECT_EQ(picture.at(200, 40), kTransparent);  // dust has none
+  EXPECT_EQ(picture.at(200, 40), kTransparent);  // dust has no outline
 }
 
 TEST_F(StylePicturesTest, OutlinesOverlapWithoutGettingDarker) {
@@ -171,7 +171,7 @@ TEST_F(StylePicturesTest, OutlinesOverlapWithoutGettingDarker) {
       ASSERT_LE(picture.at(column, row).a, 128) << column << " " << row;
     }
   }
-  // Of both neighbours, drawn once.
+  // The outline of both neighbours, drawn once.
   EXPECT_EQ(picture.at(96, 60).a, 128);
 }
 
@@ -240,7 +240,7 @@ TEST_F(StylePicturesTest, AStyleOfOneClassDrawsWhatThePlainOneDraws) {
   }
 }
 
-/// A style with lengths in pixels of a picture of scale 1, times a factor.
+/// Styles with lengths in pixels of a picture of scale 1, multiplied by a factor.
 std::vector<std::string> styles_of_size(double factor) {
   const auto px = [factor](double length) { return std::to_string(length * factor); };
   return {
@@ -255,7 +255,7 @@ std::vector<std::string> styles_of_size(double factor) {
 }
 
 TEST_F(StylePicturesTest, NeighbouringTilesJoinInEveryStyle) {
-  // Four tiles of one zoom, and one of the zoom before at twice the scale, show the same.
+  // Four tiles of one zoom show the same as one tile of the previous zoom at twice the scale.
   const std::vector<std::string> of_quarters = styles_of_size(1);
   const std::vector<std::string> of_whole = styles_of_size(0.5);
   for (std::size_t i = 0; i < of_whole.size(); ++i) {
@@ -279,7 +279,7 @@ TEST_F(StylePicturesTest, NeighbouringTilesJoinInEveryStyle) {
   }
 }
 
-/// Parameters and values, good and bad, drawn at random.
+/// Random parameters with valid and invalid values.
 std::string random_query(std::mt19937& random) {
   static const std::vector<std::string> values = {"red",
                                                   "none",
@@ -359,7 +359,7 @@ TEST_F(StylePicturesTest, NoQueryEverFails) {
     }
     const auto plan = plan_tile(std::get<TileRequest>(*parsed), dataset);
     if (!plan) {
-      // A table that there is not is not found; all else is wrong.
+      // A missing table is 404, every other mistake is 400.
       const int wrong = plan.problem().parameter == "values" ? 404 : 400;
       ASSERT_EQ(plan.problem().status, wrong) << query;
       continue;

@@ -1,4 +1,4 @@
-// Pictures of polygons that share borders, by HTTP request: no gap at any tolerance.
+// Pictures of polygons with shared borders, requested over HTTP: no gap at any tolerance.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 1 << 23;  // cells of a pixel of the tile of zoom 0
+constexpr double kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
 constexpr int kColumns = 8;
 constexpr double kSide = 24;  // pixels
 constexpr double kFrom = 32;  // where the plots begin, in columns and rows
@@ -34,10 +34,10 @@ Point at(double x, double y) {
           static_cast<std::int32_t>(kGridMin + y * kPixel)};
 }
 
-/// The borders between plots, each of which is drawn by chance once; those around all are straight.
+/// The borders between plots, each random but generated only once; the outer borders are straight.
 class Plots {
  public:
-  /// The border from one corner to the next, without its end.
+  /// The border from one corner to the next, without its last point.
   std::vector<Point> border(int x, int y, int dx, int dy) {
     const bool is_outer = dx != 0 ? y == 0 || y == kColumns : x == 0 || x == kColumns;
     std::vector<Point>& points = borders_[{x, y, dx, dy}];
@@ -75,7 +75,8 @@ class Plots {
   std::map<std::array<int, 4>, std::vector<Point>> borders_;
 };
 
-/// A square of tiny ones, too small to see, in the middle of a plot from which it is cut out.
+/// A square of `count` x `count` squares, each too small to see, inside a plot from which it is cut
+/// out.
 void add_crumbs(int count, double side, Point from, Rings& around, std::vector<Rings>& features) {
   const auto step = static_cast<std::int32_t>(side * kPixel);
   std::vector<Point> hole;
@@ -148,8 +149,8 @@ class CoveragePicturesTest : public ::testing::Test {
     return testing::picture_of(site_, target);
   }
 
-  /// The least and the greatest alpha of pixels of the tile of zoom 0 within the plots, without so
-  /// many columns and rows at each of their outer corners.
+  /// The least and the greatest alpha of the plots' pixels in the tile of zoom 0, without `corners`
+  /// columns and rows at each of their outer corners.
   std::pair<int, int> alpha(const std::string& layer, const std::string& query, int corners = 0) {
     const Picture picture = tile(layer, "0/0/0", query);
     std::pair<int, int> range{255, 0};
@@ -198,7 +199,7 @@ TEST_F(CoveragePicturesTest, RoundedCornersLeaveNoGap) {
 }
 
 TEST_F(CoveragePicturesTest, CrumbsKeepTheirColours) {
-  // Twelve rows of twelve, of three kinds in turn: a third each, in every pixel more or less.
+  // Twelve rows of twelve, in three kinds by turns: each kind covers about a third of every pixel.
   const Picture picture = tile("plots", "0/0/0", kByKind + "&simplify=0.5");
   const int from = static_cast<int>(kFrom + 2.3 * kSide) + 1;
   std::array<int, 3> sum{};
@@ -224,7 +225,7 @@ TEST_F(CoveragePicturesTest, OpacityIsTheSameEverywhere) {
 }
 
 TEST_F(CoveragePicturesTest, DashesOfASharedBorderAreDrawnOnce) {
-  // Those of both sides would fill each other's gaps.
+  // Dashes drawn from both sides would fill each other's gaps.
   const auto dark_pixels = [this](const std::string& dashes) {
     const Picture picture =
         tile("plots", "0/0/0", "fill-opacity=0&stroke=000000&stroke-width=2&simplify=2" + dashes);
@@ -252,7 +253,7 @@ TEST_F(CoveragePicturesTest, JunctionsAreMarkedAsLongAsThereAreAny) {
       EXPECT_EQ(is_dark(picture.at(column, row)), !is_corner_of_all) << x << ", " << y;
     }
   }
-  // Borders that begin at a corner may cross each other near it.
+  // Borders that begin at the same corner may cross near it.
   const auto is_near_corner = [](int at) {
     return std::abs(std::remainder(at + 0.5 - kFrom, kSide)) < 6;
   };
@@ -289,7 +290,7 @@ TEST_F(CoveragePicturesTest, EveryFeatureHasItsTintInAllTiles) {
   }
 }
 
-/// The same look in tiles of zoom 1, and in one of zoom 0 and scale 2.
+/// The same look in tiles of zoom 1, and in a tile of zoom 0 and scale 2.
 struct Look {
   const char* of_parts;
   const char* of_whole;
@@ -303,7 +304,7 @@ INSTANTIATE_TEST_SUITE_P(Looks, NeighbouringTilesTest,
                                                 "&smooth=5&stroke=black&stroke-width=1"}));
 
 TEST_P(NeighbouringTilesTest, Agree) {
-  // Of bounded quality, colours of small parts of a pixel may be others in each tile.
+  // With bounded quality, small fractions of a pixel may get other colours in each tile.
   const std::string common = kByKind + "&simplify=1.3&quality=exact";
   const std::string query = common + GetParam().of_parts;
   const Picture whole = tile("plots", "0/0/0@2x", common + GetParam().of_whole);

@@ -12,12 +12,12 @@ namespace trapeze::testing {
 namespace {
 
 constexpr int kColumns = 7;
-constexpr double kSide = 1.5;  // degrees, of a field
+constexpr double kSide = 1.5;  // degrees, the side of a field
 
 }  // namespace
 
 EditedLand::EditedLand(unsigned seed) : random_(seed) {
-  // Corners of the fields, and others half-way, which two fields have in common.
+  // Corners of the fields, and vertices half-way between them, which two fields share.
   std::vector<std::vector<Corner>> grid(2 * kColumns + 1);
   for (int row = 0; row <= 2 * kColumns; ++row) {
     for (int column = 0; column <= 2 * kColumns; ++column) {
@@ -69,7 +69,7 @@ void EditedLand::move_corner() {
   corner.y += between(-0.2, 0.2);
 }
 
-// Fields lie beside each other, and first.
+// Shuffles the fields, which come first and do not overlap.
 void EditedLand::change_order() {
   const auto end = std::ranges::find_if(
       features_, [](const Feature& feature) { return feature.kind != "field"; });

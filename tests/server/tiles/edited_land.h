@@ -1,4 +1,4 @@
-// Land that is edited by chance: fields that share borders, and woods and ponds that lie anywhere.
+// Land with random edits: fields with shared borders, and woods and ponds anywhere.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,14 @@ class EditedLand {
  public:
   explicit EditedLand(unsigned seed);
 
-  /// Moves a corner, deletes or adds a feature, changes an attribute, brings features that lie
-  /// apart into another order, or does nothing but write the file anew under another name. What it
-  /// was, in a word.
+  /// Moves a corner, deletes or adds a feature, changes an attribute, reorders features that do not
+  /// overlap, or only writes the file again under another name. Returns the kind of edit in a word.
   std::string edit();
 
-  /// As it is now, loaded from a file: one layer, "land", with the attributes kind (field, wood or
-  /// pond) and value.
+  /// Loads the current state from a file: one layer, "land", with the attributes kind (field, wood
+  /// or pond) and value.
   std::shared_ptr<const Dataset> load();
-  /// The same, written only: the path of the file.
+  /// Only writes the file; returns its path.
   std::string write();
 
  private:

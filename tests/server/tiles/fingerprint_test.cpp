@@ -1,5 +1,5 @@
-// Fingerprints of tiles: equal ones have equal bytes, whatever has become of the layer, and what is
-// not seen does not matter.
+// Fingerprints of tiles: tiles with equal fingerprints have equal bytes, however the layer was
+// edited, and changes that are not visible do not affect them.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -42,7 +42,8 @@ class FingerprintTest : public ::testing::TestWithParam<RendererKind> {
     return paint(dataset, target).fingerprint;
   }
 
-  /// Notes the bytes of the tile's fingerprint; whether they are those that it had before.
+  /// Records the bytes for the tile's fingerprint; returns whether they equal the bytes recorded
+  /// before.
   bool are_bytes_of_fingerprint(const PaintedTile& tile) {
     return *bytes_of_.emplace(tile.fingerprint, tile.bytes).first->second == *tile.bytes;
   }
@@ -69,7 +70,7 @@ const std::vector<std::string> kStyles = {
     "@2x.png?simplify=0",
 };
 
-/// A random tile of the land, or near it.
+/// A random tile of the land or near it.
 std::string random_tile(std::mt19937& random) {
   const int z = std::uniform_int_distribution<int>(0, 9)(random);
   const double longitude = std::uniform_real_distribution<double>(-5, 25)(random);
@@ -80,7 +81,7 @@ std::string random_tile(std::mt19937& random) {
          std::to_string(place(0.5 - latitude / 360));
 }
 
-// A wrong byte here is a tile that somebody goes on seeing though it has changed.
+// A wrong byte here means that a client keeps showing an outdated tile.
 TEST_P(FingerprintTest, TilesOfOneFingerprintHaveTheSameBytesThroughAllEdits) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -92,7 +93,7 @@ TEST_P(FingerprintTest, TilesOfOneFingerprintHaveTheSameBytesThroughAllEdits) {
   }
   std::map<std::string, PaintedTile> before;
   int as_before = 0;
-  int kept = 0;  // of those, the ones that have the same fingerprint
+  int kept = 0;  // the ones among these with the same fingerprint
   for (int round = 0; round < 12; ++round) {
     const auto dataset = land.load();
     for (const std::string& target : targets) {
@@ -107,7 +108,7 @@ TEST_P(FingerprintTest, TilesOfOneFingerprintHaveTheSameBytesThroughAllEdits) {
     land.edit();
   }
   EXPECT_GT(as_before, 1000);
-  // The others show a change that is too small for any pixel, far from the land mostly.
+  // The others have a change that is too small for any pixel, mostly far from the land.
   EXPECT_GT(kept, as_before * 4 / 5);
 }
 
@@ -176,8 +177,8 @@ TEST_P(FingerprintTest, ATileThatIsNotWantedIsNotPainted) {
   EXPECT_EQ(*tiles[1]->bytes, *paint(other.dataset, "land/5/16/15.png?fill=red").bytes);
 }
 
-// If this fails because tiles have other bytes than before, raise kPictureVersion and write down
-// what they are now: whoever holds old ones with their tags would go on showing them.
+// If this fails because the bytes of tiles have changed, raise kPictureVersion and record the new
+// digest: otherwise clients would keep showing old tiles, whose tags would still match.
 TEST(PictureVersion, IsThatOfTheBytesOfTiles) {
   constexpr int kVersion = 2;
   constexpr const char* kBytes = "87c6f35027b03739588ccfd92b56a068";

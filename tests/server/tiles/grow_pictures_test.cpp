@@ -1,4 +1,4 @@
-// Pictures in which what is narrow has grown, by HTTP request.
+// Pictures in which narrow features have grown, requested over HTTP.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 1 << 23;  // cells of a pixel of the tile of zoom 0
+constexpr double kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
 
 struct Place {
   double x = 0;
@@ -98,7 +98,7 @@ class GrowPicturesTest : public ::testing::Test {
     site_.data().set(dataset_);
   }
 
-  /// Fields on both sides of a river that bends, as one coverage.
+  /// Fields on both sides of a winding river, as a coverage.
   static std::unique_ptr<Layer> land() {
     const Ring north_bank{{20, 120}, {90, 130}, {150, 100}, {230, 124}};
     Ring south_bank = north_bank;
@@ -212,7 +212,7 @@ TEST_F(GrowPicturesTest, ARiverTakesFromItsFieldsWhatItGets) {
     for (const Rgba pixel : picture.pixels) sum += pixel.b;
     return sum / 255;
   };
-  // Of 1.2 from south to north, the slopes of its banks narrow it a little.
+  // 1.2 pixels from south to north; the slopes of its banks make it a little narrower.
   EXPECT_NEAR(blue(after) / blue(before), 4 / 1.16, 0.15);
   for (int column = 30; column < 220; ++column) {
     int whole = 0;
@@ -247,7 +247,8 @@ TEST_F(GrowPicturesTest, AnOutlineFollowsTheMovedBoundary) {
 }
 
 TEST_F(GrowPicturesTest, AnOutlineReachesInFromTheNextTileAsFarAsItHasMoved) {
-  // The post begins 12 pixels beyond the tile, and after it has grown 9.4 pixels; its ink is light.
+  // The post is 12 pixels outside the tile, and 9.4 pixels after it has grown; the outline is
+  // faint.
   const std::string query = "fill-opacity=0&stroke=000&stroke-width=32";
   EXPECT_EQ(tile("post/1/0/0", query).at(250, 160).a, 0);
   EXPECT_GT(tile("post/1/0/0", query + "&grow=6").at(250, 160).a, 20);
@@ -266,7 +267,7 @@ TEST_F(GrowPicturesTest, MapsInDegreesHaveIt) {
         "/map/strip.png?crs=EPSG:4326&bbox=-90,-45,90,45&width=512&height=256&quality=exact" +
             query));
   };
-  // Of 4 pixels, or a little less.
+  // The strip is 4 pixels wide here, or a little less.
   EXPECT_NEAR(of("&grow=8") / of(""), 2, 0.1);
 }
 

@@ -21,7 +21,7 @@ constexpr Rgba kRed{255, 0, 0, 255};
 constexpr Rgba kBlue{0, 0, 255, 255};
 constexpr Rgba kLime{0, 255, 0, 255};
 
-/// A layer "towns" of four features with the ids 10 to 13 and no polygons.
+/// A layer "towns" with four features, ids 10 to 13, and no polygons.
 ServedLayer towns(const LayerOptions& options = {}) {
   FeatureTable features(
       {{"kind", FieldType::text}, {"people", FieldType::integer}, {"height", FieldType::real}});

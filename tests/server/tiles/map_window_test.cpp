@@ -31,7 +31,7 @@ TEST(MapWindowTest, TheWindowOfATileIsItsView) {
     const TileId tile{zoom, (1u << zoom) / 3, (1u << zoom) / 5};
     for (const int scale : {1, 2, 3, 4}) {
       WindowSides sides = sides_of(tile);
-      sides.west += 0.3;  // as far as numbers of a request may be from those of the grid
+      sides.west += 0.3;  // as far as the numbers in a request may be off those of the grid
       sides.south -= 0.4;
       const auto view = view_of_window(sides, kTilePixels * scale, kTilePixels * scale);
       ASSERT_TRUE(view);

@@ -14,13 +14,13 @@
 namespace trapeze {
 namespace {
 
-constexpr std::int32_t kPixel = 1 << 23;  // cells of a pixel of the tile of zoom 0
+constexpr std::int32_t kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
 
 std::int32_t cell(double pixels) {
   return static_cast<std::int32_t>(kGridMin + pixels * kPixel);
 }
 
-/// From north to south through the tile of zoom 0, as rough at every scale as coasts are.
+/// From north to south through the tile of zoom 0, as rough at every scale as real coasts.
 std::vector<Point> coast() {
   std::mt19937 random(5);
   std::vector<double> places{120, 140};
@@ -83,7 +83,7 @@ class MeetingLayersTest : public ::testing::Test {
     return testing::picture_of(site_, target);
   }
 
-  /// Pixels in which less is opaque than that, of those inside of both layers together.
+  /// The number of pixels inside both layers together with less than that opacity.
   static int count_pale(const Picture& picture, int opacity) {
     int pale = 0;
     for (int row = 21; row < 235; ++row) {
@@ -103,7 +103,7 @@ TEST_F(MeetingLayersTest, NoBackgroundShowsAlongACoast) {
       return count_pale(tile(layers, "0/0/0", query), opacity);
     };
     EXPECT_EQ(pale("land.fill=red&water.fill=blue&simplify=0", 254), 0) << layers;
-    // Simplified by itself each layer has a border of its own.
+    // Each layer is simplified by itself and so has a border of its own.
     EXPECT_LE(pale("land.fill=red&water.fill=blue", 235), 2) << layers;
     EXPECT_EQ(pale("simplify=0&land.color-by=kind&land.classes=a:red,b:lime&water.fill=blue", 254),
               0)
@@ -126,7 +126,7 @@ TEST_F(MeetingLayersTest, HalfOpaqueLayersAreHalfOpaqueAlongACoast) {
 TEST_F(MeetingLayersTest, ALayerUpToTheEdgeOfTheOneBelowShowsNoRimOfIt) {
   const Picture both = tile("land,park", "0/0/0", "simplify=0&land.fill=red&park.fill=lime");
   const Picture park = tile("park", "0/0/0", "simplify=0&park.fill=lime");
-  // East of the western border of the park, the land ends where the park does.
+  // East of the western border of the park, the land ends at the border of the park.
   for (int row = 22; row < 234; ++row) {
     for (int column = 92; column < 256; ++column) {
       const Rgba colour = both.at(column, row);

@@ -1,5 +1,5 @@
-// Pictures of outlines, by HTTP request: how dark those of small rings are, and that they are the
-// same in all tiles.
+// Pictures of outlines, requested over HTTP: outlines of small rings have the right darkness, and
+// all outlines are the same in all tiles.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,14 +21,14 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 1 << 23;  // cells of a pixel of the tile of zoom 0
+constexpr double kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
 
 Point at(double x, double y) {
   return {static_cast<std::int32_t>(kGridMin + x * kPixel),
           static_cast<std::int32_t>(kGridMin + y * kPixel)};
 }
 
-/// A star around a place; its extent is about that.
+/// A star around a place, with approximately this extent.
 Rings star(double x, double y, double extent, double roughness, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> radius(extent / 2 * (1 - roughness),
@@ -96,7 +96,7 @@ TEST_F(OutlinePicturesTest, InkOfARingGoesToNothingWithItsSize) {
   for (double extent = 0.6; extent < 12; extent *= 1.05) {
     serve({star(100.3, 100.4, extent, 0, 1)});
     const double ink = ink_of(tile("0/0/0", "stroke=000&stroke-width=1"));
-    const double all = std::numbers::pi * extent;  // of a line of one pixel
+    const double all = std::numbers::pi * extent;  // the ink of a line of one pixel
     if (extent > 4.3) {
       EXPECT_NEAR(ink / all, 1, 0.06) << extent;
     } else {
@@ -121,7 +121,7 @@ TEST_F(OutlinePicturesTest, ALargeOneIsWholeBesideASmallOne) {
   for (int row = 51; row < 149; ++row) EXPECT_EQ(picture.at(150, row).a, 255) << row;
 }
 
-/// Rings of all sizes around the corner of four tiles, and a large one on which others lie.
+/// Rings of all sizes around the corner of four tiles, and a large ring below others.
 std::vector<Rings> rings_of_all_sizes() {
   std::vector<Rings> features = {star(128, 128, 90, 0.3, 1)};
   std::mt19937 random(2);
@@ -160,7 +160,7 @@ Rings polygon(std::vector<Point> points) {
 
 constexpr std::array<const char*, 3> kJoins = {"bevel", "miter", "round"};
 
-/// The columns from the western edge to that one are alike.
+/// Expects equal columns from the western edge to `end`.
 void expect_alike_up_to(int end, const Picture& a, const Picture& b) {
   for (int row = 0; row < a.height; ++row) {
     for (int column = 0; column < end; ++column) {
@@ -203,7 +203,7 @@ TEST_F(OutlinePicturesTest, CornersOfABorderThatLiesUnderOthersAreJoined) {
 }
 
 TEST_F(OutlinePicturesTest, CornersThatStaySharpAreJoined) {
-  // The second lies in the triangle in which the inner corner of the first would be rounded.
+  // The second is in the triangle where the inner corner of the first would be rounded.
   serve({polygon({at(60, 60), at(60, 120), at(90, 120), at(90, 90), at(120, 90), at(120, 60)}),
          polygon({at(93, 93), at(93, 96), at(96, 93)})});
   const std::string query = "stroke=000&stroke-width=12&smooth=14&stroke-linejoin=";
@@ -211,7 +211,7 @@ TEST_F(OutlinePicturesTest, CornersThatStaySharpAreJoined) {
   EXPECT_EQ(tile("0/0/0", query + "round").at(84, 84).a, 0);
 }
 
-/// From the western edge of the world to the eastern one, up to a parallel in the south.
+/// From the western edge of the world to the eastern one, down to a parallel in the south.
 Rings cut_by_the_frame(double latitude) {
   const auto south = static_cast<std::int32_t>(std::lround(grid_from_lonlat({0, latitude}).y));
   Rings rings;

@@ -124,7 +124,7 @@ TEST(ReadTileMatrixSetTest, TheExamplesAreSound) {
       EXPECT_LT(set->matrices[i].cell_size, set->matrices[i - 1].cell_size) << id << " " << i;
     }
   }
-  // As they are published.
+  // The published values.
   EXPECT_NEAR(sets.find("EuropeanETRS89_LAEAQuad")->matrices[0].scale_denominator,
               62779017.857142866, 1e-6);
   EXPECT_NEAR(sets.find("UPSAntarcticWGS84Quad")->matrices[0].scale_denominator, 458726544.4, 1);

@@ -1,4 +1,4 @@
-// Whether a tile is the same whoever draws it.
+// Compares tiles drawn by the software renderer and with EGL.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 
 namespace trapeze::testing {
 
-/// Draws a tile, given by its address behind /tiles/, in plain C++ and by EGL: opacities are at
-/// most 2 apart.
+/// Draws a tile, given by its address after /tiles/, in plain C++ and with EGL, and expects
+/// opacities that differ by at most 2.
 inline void expect_same_by_gl(const std::string& target,
                               const std::shared_ptr<const Dataset>& dataset) {
   const auto parsed = parse_tiles_target(split_target("/tiles/" + target).value(), StyleBook());

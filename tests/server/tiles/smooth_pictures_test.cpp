@@ -1,4 +1,4 @@
-// Pictures with rounded corners, by HTTP request, held to parabolas that are sampled.
+// Pictures with rounded corners, requested over HTTP, compared with sampled parabolas.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 1 << 23;  // cells of a pixel of the tile of zoom 0
+constexpr double kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
 
 struct Place {
   double x = 0;
@@ -25,7 +25,7 @@ struct Place {
 };
 using Ring = std::vector<Place>;  // in pixels of the tile of zoom 0
 
-/// Land cover as it comes from a raster, of steps and slopes, and with a hole.
+/// Land cover as derived from a raster, with steps and slopes and with a hole.
 const std::vector<Ring> kStairs = {
     {{40, 40},
      {80, 40},
@@ -47,7 +47,7 @@ Place between(Place a, Place b, double share) {
   return {a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share};
 }
 
-/// With every corner as a parabola of many chords.
+/// The ring with every corner replaced by a parabola of many chords.
 Ring rounded(const Ring& ring, double radius) {
   constexpr int kChords = 64;
   Ring result;
@@ -67,8 +67,8 @@ Ring rounded(const Ring& ring, double radius) {
   return result;
 }
 
-/// By pixel of the tile, in 255ths: along each of 16 lines a row what lies between every second
-/// crossing and the next.
+/// Alpha by pixel of the tile, in 255ths: in each row, the stretches between every odd crossing and
+/// the next one, along 16 lines.
 std::vector<double> true_alphas(const std::vector<Ring>& rings) {
   constexpr int kLines = 16;
   std::vector<double> alphas(256 * 256);
@@ -102,7 +102,7 @@ class SmoothPicturesTest : public ::testing::Test {
     std::vector<ServedLayer> layers;
     layers.push_back(layer("stairs", {rings_of(kStairs)}));
     layers.push_back(layer("east", {rings_of({kEast})}));
-    // The second lies over the first, which keeps its corners.
+    // The second overlaps the first, so the first keeps its corners.
     layers.push_back(
         layer("over", {rings_of(kStairs), rings_of({{{50, 50}, {70, 50}, {60, 70}}})}));
     dataset_ = std::make_shared<const Dataset>(std::move(layers));
@@ -160,7 +160,7 @@ TEST_F(SmoothPicturesTest, AreasAreThoseOfPolygonsWithParabolasForCorners) {
       worst = std::max(worst, off);
     }
     EXPECT_GT(edges, 300);
-    // Chords are a 25th of a pixel off at most.
+    // Chords are off by a 25th of a pixel at most.
     EXPECT_LT(worst, 20) << radius;
     EXPECT_LT(sum / edges, 5) << radius;
   }
@@ -206,13 +206,13 @@ TEST_F(SmoothPicturesTest, DashesAreAsLongAsWithSharpCorners) {
 TEST_F(SmoothPicturesTest, TheTagOfATileTellsCornersThatAreSeenInIt) {
   EXPECT_NE(etag("stairs/0/0/0", "smooth=8"), etag("stairs/0/0/0", ""));
   EXPECT_EQ(etag("stairs/0/0/0", "smooth=0"), etag("stairs/0/0/0", ""));
-  // Wholly within the polygon, or on the straight of an edge.
+  // Wholly inside the polygon, or on a straight edge.
   EXPECT_EQ(etag("stairs/5/13/19", "smooth=8"), etag("stairs/5/13/19", ""));
   EXPECT_EQ(etag("stairs/5/7/5", "smooth=8"), etag("stairs/5/7/5", ""));
 }
 
 TEST_F(SmoothPicturesTest, ACornerBesideATileReachesIntoIt) {
-  // Of zoom 4, the corner at 130, 70 is 32 pixels to the east of the tile 7/4.
+  // At zoom 4, the corner at 130, 70 is 32 pixels east of the tile 7/4.
   const Picture sharp = tile("stairs/4/7/4", "simplify=0");
   const Picture smooth = tile("stairs/4/7/4", "simplify=0&smooth=64");
   EXPECT_FALSE(sharp.pixels == smooth.pixels);

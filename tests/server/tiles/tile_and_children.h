@@ -1,4 +1,4 @@
-// A tile of 512 pixels beside its four children.
+// Compares a tile of 512 pixels with its four children.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 
 namespace trapeze::testing {
 
-/// Expects the opacities of a tile at twice the scale to be those of its children, but for
-/// roundings: the north-western one, the north-eastern, the two southern ones.
+/// Expects the opacities of a tile at twice the scale to equal those of its children, except for
+/// rounding. Order of the children: north-west, north-east, south-west, south-east.
 inline void expect_children_are_alike(const Picture& parent,
                                       const std::array<Picture, 4>& children) {
   ASSERT_EQ(parent.width, 512);

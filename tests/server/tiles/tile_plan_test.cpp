@@ -34,7 +34,7 @@ class TilePlanTest : public ::testing::Test {
     return *planned;
   }
   std::string key(const std::string& target) const { return plan(target).key(); }
-  /// The level of the default tolerance in tiles of 256 pixels.
+  /// The level of the default tolerance for tiles of 256 pixels.
   static Level usual_level(int zoom) {
     return nearest_level(static_cast<double>(TileId{zoom, 0, 0}.side()) / 256 / 4);
   }
@@ -105,7 +105,7 @@ TEST_F(TilePlanTest, TheKeyDependsOnTheDataAndNotOnTheRun) {
   plan.dataset = again;
   EXPECT_EQ(plan.key(), key);
   auto layers = layers_of_files({testing::fixture("west.geojson")});
-  layers[0].name = "rings";  // the same name, other contents
+  layers[0].name = "rings";  // the same name with other contents
   plan.dataset = Dataset::load(layers);
   EXPECT_NE(plan.key(), key);
 }

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Draws only when it is let; counts what it draws.
+/// Draws only once the gate is open; counts its tasks.
 class GatedRenderer final : public MaskRenderer {
  public:
   struct Gate {
@@ -67,7 +67,7 @@ class TileServiceTest : public ::testing::Test {
     service_ = std::make_unique<TileService>(options, std::move(renderers));
   }
 
-  /// A plan of which no two are equal unless the shade is.
+  /// Plans are equal only if their shades are.
   TilePlan plan(int shade) const {
     LayerPaint paint;
     paint.style.paints = {{{static_cast<std::uint8_t>(shade), 0, 0, 255}, {}}};
@@ -96,7 +96,7 @@ class TileServiceTest : public ::testing::Test {
     is_open_ = true;
   }
 
-  /// Of one who asks and has every tile; notes which.
+  /// For a client that has every tile; records the requested fingerprint.
   std::string asked_;
   const TileService::Holds holds_all_ = [this](const std::string& fingerprint) {
     asked_ = fingerprint;
@@ -106,7 +106,7 @@ class TileServiceTest : public ::testing::Test {
   bool is_open_ = false;
   const std::shared_ptr<const Dataset> dataset_ = testing::sample_dataset();
   std::unique_ptr<TileService> service_;
-  TileService::Ticket ticket_;  // of the last who asked
+  TileService::Ticket ticket_;  // of the last request
 };
 
 TEST_F(TileServiceTest, EqualPlansUnderWayTogetherAreDrawnOnce) {
@@ -223,9 +223,9 @@ TEST_F(TileServiceTest, WhatNobodyWantsAnyLongerIsNotDrawn) {
   EXPECT_EQ(service_->figures().waiting, 0u);
   service_->withdraw(of_drawing);
   EXPECT_EQ(drawing.get().outcome, TileOutcome::withdrawn);
-  service_->withdraw(of_drawing);  // once more, which does nothing
+  service_->withdraw(of_drawing);  // the second call does nothing
   auto next = submit(2);
-  wait_until_drawing(2);  // though the gate is shut
+  wait_until_drawing(2);  // although the gate is shut
   open();
   EXPECT_EQ(next.get().outcome, TileOutcome::drawn);
 }
@@ -283,7 +283,7 @@ TEST_F(TileServiceTest, AnObserverThatFailsDoesNotKeepTilesFromBeingAnswered) {
   EXPECT_EQ(submit(1).get().outcome, TileOutcome::drawn);
 }
 
-/// A tile with much in it.
+/// A tile with many features.
 TilePlan busy_plan(TileId tile, int scale) {
   TileRequest request;
   request.layers = {"rings", "west"};
@@ -398,7 +398,7 @@ TEST_F(TileServiceTest, WhatAllHoldWhoAskIsNotDrawn) {
         [promise](const TileAnswer& answer) { promise->set_value(answer); }, std::move(holds));
     return promise->get_future().get();
   };
-  for (const TilePlan& tile : {plan(1), busy_plan({1, 0, 0}, 4)}) {  // and one in bands
+  for (const TilePlan& tile : {plan(1), busy_plan({1, 0, 0}, 4)}) {  // the second one in bands
     const TileAnswer drawn = ask(tile, {});
     EXPECT_EQ(drawn.outcome, TileOutcome::drawn);
     const int begun = gate_.begun;
@@ -423,7 +423,7 @@ TEST_F(TileServiceTest, CheapTilesThatAreHeldAreAnsweredWithoutAWorker) {
   options.observe = [&told](const TileAnswer& answer) { told.push_back(answer.outcome); };
   start(options);
   const TilePlan tile = plan(1);
-  const auto waiting = submit(2);  // which nothing opens the gate for
+  const auto waiting = submit(2);  // for which the gate stays shut
   std::string asked;
   const auto not_held = [&asked](const std::string& fingerprint) {
     asked = fingerprint;
@@ -440,7 +440,7 @@ TEST_F(TileServiceTest, CheapTilesThatAreHeldAreAnsweredWithoutAWorker) {
   EXPECT_EQ(told, std::vector{TileOutcome::held});
   open();
   EXPECT_EQ(submit(tile).get().tile.fingerprint, asked);
-  service_.reset();  // before what is told goes
+  service_.reset();  // before `told` is destroyed
 }
 
 TEST_F(TileServiceTest, TilesInClassesAreAnsweredWithoutAWorkerOnceTheClassesAreKnown) {

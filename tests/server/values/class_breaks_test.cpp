@@ -18,7 +18,7 @@ Numbers breaks_of(std::string_view rule, const Numbers& numbers) {
   return class_breaks(parse_break_rule(rule).value(), spread_of(numbers, 0));
 }
 
-/// The sum over all classes of squared distances from their means.
+/// The sum over all classes of the squared distances from the mean of the class.
 double cost_of(const Numbers& breaks, const Numbers& numbers) {
   double cost = 0;
   for (std::size_t i = 0; i <= breaks.size(); ++i) {
@@ -34,7 +34,7 @@ double cost_of(const Numbers& breaks, const Numbers& numbers) {
   return cost;
 }
 
-/// The least cost of any way to part them, by trying all.
+/// The least cost of any division into classes, by brute force.
 double least_cost(std::size_t classes, const Numbers& values, const Numbers& numbers,
                   const Numbers& breaks = {}, std::size_t from = 1) {
   if (breaks.size() + 1 == classes) return cost_of(breaks, numbers);
@@ -51,7 +51,7 @@ TEST(ClassBreaksTest, HaveAsManyNumbersInEachQuantile) {
   EXPECT_THAT(breaks_of("quantile:4", {8, 7, 6, 5, 4, 3, 2, 1}), ElementsAre(3, 5, 7));
   EXPECT_THAT(breaks_of("quantile:2", {1, 2, 3}), ElementsAre(2));
   // numpy.quantile(x, [0.2, 0.4, 0.6, 0.8], method="inverted_cdf") of 0 to 99 gives 19, 39, 59, 79:
-  // the last of each class, where a break is the first of the next.
+  // the last number of each class, where a break is the first number of the next.
   Numbers hundred(100);
   for (std::size_t i = 0; i < hundred.size(); ++i) hundred[i] = static_cast<double>(i);
   EXPECT_THAT(breaks_of("quantile:5", hundred), ElementsAre(20, 40, 60, 80));
@@ -72,7 +72,7 @@ TEST(ClassBreaksTest, AreAtEqualDistances) {
 }
 
 TEST(ClassBreaksTest, AreStandardDeviationsFromTheMean) {
-  // Mean 5, deviation 2.
+  // Mean 5, standard deviation 2.
   EXPECT_THAT(breaks_of("stddev", {2, 4, 4, 4, 5, 5, 7, 9}), ElementsAre(3, 5, 7, 9));
 }
 

@@ -10,7 +10,7 @@ using ::testing::HasSubstr;
 
 using Record = std::vector<std::string>;
 
-/// All records, or the words of the problem in the place of the last.
+/// All records; if there is a problem, its message is the last one.
 std::vector<Record> records_of(std::string_view text) {
   CsvReader reader(text, find_delimiter(text));
   std::vector<Record> records;

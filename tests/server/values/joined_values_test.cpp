@@ -13,8 +13,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// Features of codes as text, integers and numbers: FRA 7 7.5, DEU 8 8.5, one without any, FRA
-/// 7 7.5.
+/// Features with codes as text, integers and numbers: FRA 7 7.5, DEU 8 8.5, one without any, FRA 7
+/// 7.5.
 std::unique_ptr<const Layer> countries() {
   FeatureTable features(
       {{"A3", FieldType::text}, {"number", FieldType::integer}, {"share", FieldType::real}});

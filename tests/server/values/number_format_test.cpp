@@ -16,7 +16,7 @@ TEST(NumberFormatTest, WritesNumbersForPeople) {
   EXPECT_EQ(written(1234567.891, ","), "1,234,567.891");
   EXPECT_EQ(written(-123456, ","), "-123,456");
   EXPECT_EQ(written(999, ","), "999");
-  EXPECT_EQ(written(1234.5, ".0f"), "1234");  // to even, as the nearest
+  EXPECT_EQ(written(1234.5, ".0f"), "1234");  // ties round to even
   EXPECT_EQ(written(-0.001, ".1f"), "0.0");
   EXPECT_EQ(written(0.1 + 0.2, "f"), "0.3");
   EXPECT_EQ(written(0.256, ".1%"), "25.6%");

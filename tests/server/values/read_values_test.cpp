@@ -12,7 +12,7 @@ Result<ValueTable> read(std::string_view text, const ReadValuesOptions& options 
   return read_values(text, *table_format({}, text), options);
 }
 
-/// "FRA=1 DEU=2.5", or the status and the words of the problem.
+/// "FRA=1 DEU=2.5", or the status and the message of the problem.
 std::string rows_of(std::string_view text, const ReadValuesOptions& options = {}) {
   const auto table = read(text, options);
   if (!table) return std::to_string(table.problem().status) + " " + table.problem().detail;
