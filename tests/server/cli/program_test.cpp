@@ -211,9 +211,10 @@ TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
   half.send("Host: a\r\n\r\n");
   EXPECT_EQ(half.receive().status, 200) << "what was asked before the signal is answered";
   EXPECT_EQ(program.wait(), 0);
-  EXPECT_THAT(program.output(),
-              AllOf(HasSubstr("rendering with software"), HasSubstr("rings.geojson: 1 of 1 features"),
-                    HasSubstr("ready: 2 layers"), HasSubstr("SIGTERM"), HasSubstr("stopped")));
+  EXPECT_THAT(
+      program.output(),
+      AllOf(HasSubstr("rendering with software"), HasSubstr("rings.geojson: 1 of 1 features"),
+            HasSubstr("ready: 2 layers"), HasSubstr("SIGTERM"), HasSubstr("stopped")));
 }
 
 TEST(ProgramTest, KeepsTheMemoryOfLayersAndNotThatOfBuildingThem) {
