@@ -283,14 +283,15 @@ class ConfigReader {
       fail(node, fmt::format("layer \"{}\": crs: {}", layer.name, why));
     };
     if (std::ranges::find(layer.crs, kBuiltCrs) == layer.crs.end()) {
-      cannot(fmt::format("{} must be in the list: locations and bounds are given in it", kBuiltCrs));
+      cannot(
+          fmt::format("{} must be in the list: locations and bounds are given in it", kBuiltCrs));
     }
     for (auto name = layer.crs.begin(); name != layer.crs.end(); ++name) {
       if (std::find(layer.crs.begin(), name, *name) != name) cannot(*name + " is named twice");
       if (*name == kBuiltCrs) continue;
       if (*name == "EPSG:4326" || *name == "CRS:84") {
-        cannot(
-            fmt::format("{} needs no grid of its own: its maps are derived from {}", *name, kBuiltCrs));
+        cannot(fmt::format("{} needs no grid of its own: its maps are derived from {}", *name,
+                           kBuiltCrs));
         continue;
       }
       try {

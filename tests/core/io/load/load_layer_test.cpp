@@ -580,8 +580,7 @@ TEST_F(LoadLayerTest, TooManyOverEachOtherAreBuiltApartAndItIsSaid) {
   EXPECT_EQ(report.loaded, 6000u);
   EXPECT_EQ(report.coverage.apart, 6000u);
   ASSERT_EQ(report.notes.size(), 1u);
-  EXPECT_EQ(report.notes[0].reason,
-            "built apart from 5999 neighbours: too many of them overlap");
+  EXPECT_EQ(report.notes[0].reason, "built apart from 5999 neighbours: too many of them overlap");
 }
 
 TEST_F(LoadLayerTest, NeighboursAreBuiltTogetherWhateverTheThreads) {

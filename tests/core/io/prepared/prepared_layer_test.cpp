@@ -419,8 +419,9 @@ TEST_F(PreparedLayerTest, WithOtherBlocksThanDemandedIsRefused) {
   prepare(kMixed, prepared_, options);
   PreparedDemands demands;
   demands.merge = 0;
-  EXPECT_THAT(failure_of(prepared_, demands), AllOf(HasSubstr("blocks of polygons up to 2.5 pixels"),
-                                                    HasSubstr("0 are configured")));
+  EXPECT_THAT(
+      failure_of(prepared_, demands),
+      AllOf(HasSubstr("blocks of polygons up to 2.5 pixels"), HasSubstr("0 are configured")));
   demands.merge = 2.5;
   EXPECT_EQ(arrays_of(*open_prepared_layer(prepared_, demands).layer).options,
             options.generalization);

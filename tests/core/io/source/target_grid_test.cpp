@@ -87,10 +87,11 @@ TEST(TargetGridTest, GoesAllTheWayRoundAPole) {
 }
 
 TEST(TargetGridTest, RefusesWhatIsNoPlaneOrNotKnown) {
-  for (const auto& [name, words] : {std::pair("EPSG:4326", "is no system of a plane"),
-                                    std::pair("EPSG:99999", "that PROJ does not know"),
-                                    std::pair("+proj=merc", "is not the name of a reference system"),
-                                    std::pair("/etc/passwd", "is not the name of a reference system")}) {
+  for (const auto& [name, words] :
+       {std::pair("EPSG:4326", "is no system of a plane"),
+        std::pair("EPSG:99999", "that PROJ does not know"),
+        std::pair("+proj=merc", "is not the name of a reference system"),
+        std::pair("/etc/passwd", "is not the name of a reference system")}) {
     try {
       find_target_grid(name);
       FAIL() << name;
