@@ -33,9 +33,8 @@ Result<Boxes> boxes_of(const DocumentRequest& request) {
   Boxes boxes = parse_boxes(*text);
   if (!boxes.empty()) return boxes;
   const std::string takes =
-      "west, south, east and north in degrees, separated by commas; over the antimeridian, the "
-      "west "
-      "is the greater";
+      "west, south, east and north in degrees, separated by commas; west may be greater than "
+      "east, across the antimeridian";
   return Problem{400, fmt::format("The parameter bbox takes {}.", takes), "bbox", *text, takes};
 }
 

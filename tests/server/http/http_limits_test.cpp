@@ -135,13 +135,23 @@ TEST(HttpLimitsTest, DrawnTilesOfAnAddressAreLimitedAndKeptOnesAreNot) {
   EXPECT_EQ(RawClient(server.port(), "127.0.0.2").get("/tiles/rings/2/3/1.png").status, 200);
 }
 
-TEST(HttpLimitsTest, BehindATrustedProxyItIsTheClientThatIsLimited) {
+/// Draws one tile for each client address, and no more for minutes.
+SiteOptions one_tile_per_client() {
   SiteOptions site;
   site.drawn_per_second = 0.001;
   site.drawn_burst = 1;
+  return site;
+}
+
+/// Trusts X-Forwarded-For from 127.0.0.1.
+HttpServerOptions behind_local_proxy() {
   HttpServerOptions options;
   options.trusted_proxies = {parse_address_range("127.0.0.1").value()};
-  RunningServer server(options, site);
+  return options;
+}
+
+TEST(HttpLimitsTest, BehindATrustedProxyItIsTheClientThatIsLimited) {
+  RunningServer server(behind_local_proxy(), one_tile_per_client());
   const auto status_for = [&server](const std::string& from, const std::string& client, int x) {
     return RawClient(server.port(), from)
         .get("/tiles/rings/3/" + std::to_string(x) + "/1.png",
@@ -156,12 +166,7 @@ TEST(HttpLimitsTest, BehindATrustedProxyItIsTheClientThatIsLimited) {
 }
 
 TEST(HttpLimitsTest, WhatIsSentBehindABodyIsNoHeader) {
-  SiteOptions site;
-  site.drawn_per_second = 0.001;
-  site.drawn_burst = 1;
-  HttpServerOptions options;
-  options.trusted_proxies = {parse_address_range("127.0.0.1").value()};
-  RunningServer server(options, site);
+  RunningServer server(behind_local_proxy(), one_tile_per_client());
   const auto status_for = [&server](const std::string& trailer, int x) {
     RawClient client(server.port());
     client.send("GET /tiles/rings/3/" + std::to_string(x) +
