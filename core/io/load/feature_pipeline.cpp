@@ -264,7 +264,10 @@ void FeaturePipeline::accept(SourceFeature& next, const Take& take) {
   std::unique_ptr<OGRGeometry> geometry(next.feature->StealGeometry(next.layer->geometry_field));
   if (geometry == nullptr && !next.failure.empty()) {
     tally_.skip({order, 0, id}, next.failure);
-  } else if (geometry == nullptr || !has_polygons(*geometry)) {
+  } else if (geometry == nullptr) {
+    ++tally_.other_geometry;
+    tally_.remark({order, 0, id}, "has no geometry");
+  } else if (!has_polygons(*geometry)) {
     ++tally_.other_geometry;
   } else {
     if (!next.failure.empty()) tally_.remark({order, 0, id}, "read, but: " + next.failure);

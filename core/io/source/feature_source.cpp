@@ -48,6 +48,12 @@ bool is_asked_when_read(std::string_view driver) {
   return driver == "GPKG" || driver == "SQLite" || driver == "PostgreSQL";
 }
 
+/// Whether the driver parses many features at once, so that an error does not say which it
+/// concerns.
+bool is_read_ahead(std::string_view driver) {
+  return driver == "GeoJSON" || driver == "TopoJSON" || driver == "ESRIJSON";
+}
+
 /// Past the quoted text, the name or the comment that begins there; `at` itself if nothing does.
 std::size_t end_of_quoted(std::string_view sql, std::size_t at) {
   struct Quotes {
@@ -215,6 +221,9 @@ void FeatureSource::expect(OGRLayer& layer) {
 
 std::vector<std::string> FeatureSource::warnings() const {
   std::vector<std::string> warnings;
+  if (!failure_ahead_.empty()) {
+    warnings.push_back("cannot be read as a whole: " + failure_ahead_);
+  }
   if (driver() == "TopoJSON") return warnings;  // its coordinates are degrees, if possible
   for (const SourceLayer& layer : layers_) {
     if (layer.crs.kind != SourceCrs::Kind::assumed_degrees) continue;
@@ -282,6 +291,8 @@ bool FeatureSource::read_next(SourceFeature& next) {
   if (next.feature != nullptr) {
     ++read_;
     next.failure = messages_.has_failure() ? messages_.text() : std::string();
+    const bool has_failed = !next.failure.empty() || !failure_ahead_.empty();
+    if (has_failed && is_read_ahead(driver())) assign_failure_ahead(next);
   }
   // An interleaved stream fails as a whole, though it may still return features from before that.
   if (messages_.has_failure() && (next.feature == nullptr || is_interleaved_)) {
@@ -289,6 +300,15 @@ bool FeatureSource::read_next(SourceFeature& next) {
                       " features: " + messages_.text());
   }
   return next.feature != nullptr;
+}
+
+/// The error may concern any feature of the block that was parsed; those without a geometry are the
+/// ones that could not be read.
+void FeatureSource::assign_failure_ahead(SourceFeature& next) {
+  if (!next.failure.empty()) failure_ahead_ = next.failure;
+  const bool has_geometry =
+      next.layer != nullptr && next.feature->GetGeomFieldRef(next.layer->geometry_field) != nullptr;
+  next.failure = has_geometry ? std::string() : failure_ahead_;
 }
 
 /// The next wanted feature. Features that were passed over count as read.

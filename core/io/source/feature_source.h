@@ -32,7 +32,9 @@ struct SourceFeature {
   const SourceLayer* layer = nullptr;  // null: the feature is from a layer that cannot hold
                                        // polygons
   std::size_t layer_index = 0;         // in layers()
-  std::string failure;                 // GDAL's error while reading it, if any
+  /// GDAL's error while reading it, if any. If the format is parsed many features at a time: the
+  /// latest error so far, and only if this feature has no geometry.
+  std::string failure;
 };
 
 class FeatureSource {
@@ -50,7 +52,7 @@ class FeatureSource {
 
   /// Possible problems, in words without the name of the source: a layer whose coordinates are
   /// interpreted as degrees because it has no known reference system and its format has no usual
-  /// one.
+  /// one; a format that is read ahead, with an error that cannot be assigned to a feature.
   std::vector<std::string> warnings() const;
   /// Throws SourceError, before anything is read, if it is known that a layer cannot be projected
   /// to Web Mercator: because of its reference system or, if it has none, because of its declared
@@ -80,6 +82,7 @@ class FeatureSource {
   void select_ids(const SourceSelection& selection);
   bool knows_places() const;
   bool read_next(SourceFeature& next);
+  void assign_failure_ahead(SourceFeature& next);
   OGRFeatureUniquePtr next_by_place(SourceFeature& next);
   OGRFeatureUniquePtr next_by_id(SourceFeature& next);
   void read_by_id(OGRLayer& layer);
@@ -100,6 +103,7 @@ class FeatureSource {
   std::vector<SourceLayer> layers_;
   std::size_t passed_over_ = 0;
   GdalMessages messages_;
+  std::string failure_ahead_;  // the latest error of a format that is read ahead
 
   bool has_condition_ = false;
   std::vector<GIntBig> stored_;  // by layer: the declared number of features, < 0 if not declared

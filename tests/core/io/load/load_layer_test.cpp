@@ -119,9 +119,37 @@ TEST_F(LoadLayerTest, CountsEveryFeatureOnce) {
   EXPECT_EQ(report.polygons, 8u);
   EXPECT_EQ(report.rings, 9u);
   EXPECT_EQ(report.repaired, 1u);
+  ASSERT_EQ(report.notes.size(), 3u);
+  std::size_t without_geometry = 0;
+  for (const FeatureNote& note : report.notes) {
+    if (note.reason == "has no geometry") {
+      ++without_geometry;
+    } else {
+      EXPECT_EQ(note.id, 15);
+      EXPECT_THAT(note.reason, HasSubstr("repaired"));
+    }
+  }
+  EXPECT_EQ(without_geometry, 2u);
+}
+
+TEST_F(LoadLayerTest, SkipsFeaturesOfGeoJsonWhoseGeometryCannotBeRead) {
+  const std::string square = R"("Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]])";
+  const auto feature = [](int id, const std::string& type) {
+    return R"({"type":"Feature","id":)" + std::to_string(id) +
+           R"(,"properties":{},"geometry":{"type":)" + type + "}}";
+  };
+  const std::string path = folder_.write(
+      "a.geojson", R"({"type":"FeatureCollection","features":[)" + feature(1, square) + "," +
+                       feature(2, R"("Polygon","coordinates":[[[0,0],["x",0],[1,1],[0,0]]])") +
+                       "," + feature(3, square) + "]}");
+  const LoadReport report = load_layer(path).report;
+  EXPECT_EQ(report.loaded, 2u);
+  EXPECT_EQ(report.skipped, 1u);
   ASSERT_EQ(report.notes.size(), 1u);
-  EXPECT_EQ(report.notes[0].id, 15);
-  EXPECT_THAT(report.notes[0].reason, HasSubstr("repaired"));
+  EXPECT_EQ(report.notes[0].id, 2);
+  EXPECT_THAT(report.notes[0].reason, HasSubstr("coordinate"));
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_THAT(report.warnings[0], HasSubstr("cannot be read as a whole"));
 }
 
 TEST_F(LoadLayerTest, KeepsAttributesOfAllTypesAndIds) {
