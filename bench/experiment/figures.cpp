@@ -22,7 +22,7 @@ constexpr std::array<Rgba, 3> kFills{
 constexpr std::array<Rgba, 3> kPaleFills{
     {{0xf4, 0xee, 0xdc, 0xff}, {0xd5, 0xe8, 0xd3, 0xff}, {0xec, 0xcf, 0xcb, 0xff}}};
 
-View middle_of(const View& view) {
+View middle_view(const View& view) {
   View middle = view;
   middle.width = kWidth;
   middle.height = kHeight;
@@ -75,7 +75,7 @@ std::vector<std::string> draw_figures(const Map& map, const std::vector<ScaledVi
   int number = 0;
   for (const double share : kFigureScales) {
     const ScaledView scaled = views_of_scale(trip, share * map.source.smallest_scale).front();
-    const View view = middle_of(scaled.view);
+    const View view = middle_view(scaled.view);
     const auto select = [&](SmallPolygons small) {
       for (std::size_t i = 0; i < layers.size(); ++i) {
         layers[i]->select({view.box(), scaled.level, scaled.level, small}, ranges[i]);

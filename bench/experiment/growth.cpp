@@ -41,7 +41,7 @@ void time(std::vector<double>& times, const Work& work) {
   times.push_back(ms);
 }
 
-void measure_graph(const Rings& rings, GrowthPoint& point) {
+void time_graph(const Rings& rings, GrowthPoint& point) {
   std::vector<double> build, weigh, generalize, undo;
   repeat([&] {
     Rings copy = rings;
@@ -113,7 +113,7 @@ std::vector<GrowthPoint> measure_growth(std::size_t most, Screen& screen) {
     GrowthPoint point;
     const Rings rings = wiggly_star(vertices);
     point.vertices = rings.points.size();
-    measure_graph(rings, point);
+    time_graph(rings, point);
     measure_layer(rings, screen, point);
     points.push_back(point);
   }

@@ -9,7 +9,7 @@ namespace trapeze::experiment {
 namespace {
 
 // Fewer items than this are sorted and searched linearly.
-constexpr std::size_t kFew = 16;
+constexpr std::size_t kFewSlots = 16;
 
 constexpr Point point_of_key(std::uint64_t key) {
   const auto unbiased = [](std::uint64_t v) {
@@ -120,7 +120,7 @@ std::size_t OpenTrapezoids::locate(Point p) const {
   const auto is_left = [p](const Slot& slot) {
     return orientation(slot.edge.upper, slot.edge.lower, p) < 0;
   };
-  const auto found = status_.size() < kFew
+  const auto found = status_.size() < kFewSlots
                          ? std::find_if_not(status_.begin(), status_.end(), is_left)
                          : std::partition_point(status_.begin(), status_.end(), is_left);
   return static_cast<std::size_t>(found - status_.begin());

@@ -19,16 +19,16 @@ namespace {
 // minutes.
 constexpr std::size_t kMaxHolesForGeos = 2000;
 
-using Side = std::pair<Point, Point>;
+using RingSide = std::pair<Point, Point>;
 
 struct PointOrder {
   bool operator()(Point a, Point b) const { return is_above(a, b); }
 };
 
 /// Vertices and sides of rings, for look-up.
-class Boundary {
+class RingBoundary {
  public:
-  explicit Boundary(const Rings& rings) {
+  explicit RingBoundary(const Rings& rings) {
     points_ = rings.points;
     std::sort(points_.begin(), points_.end(), PointOrder());
     for (std::size_t r = 0; r < rings.size(); ++r) {
@@ -53,13 +53,15 @@ class Boundary {
   }
 
  private:
-  static Side in_order(Point a, Point b) { return is_above(a, b) ? Side{a, b} : Side{b, a}; }
-  static bool is_before(const Side& a, const Side& b) {
+  static RingSide in_order(Point a, Point b) {
+    return is_above(a, b) ? RingSide{a, b} : RingSide{b, a};
+  }
+  static bool is_before(const RingSide& a, const RingSide& b) {
     return a.first == b.first ? is_above(a.second, b.second) : is_above(a.first, b.first);
   }
 
   std::vector<Point> points_;
-  std::vector<Side> sides_;
+  std::vector<RingSide> sides_;
 };
 
 double area_of_ring(std::span<const Point> ring) {
@@ -251,7 +253,7 @@ std::vector<Quality> measure_quality(Method method, Topology topology, const Map
 // A removed vertex is at most as far from the boundary as from the chord that replaced it, if that
 // exists; so most vertices need not be compared with all sides.
 double distance_between(const Rings& source, const Rings& simplified) {
-  const Boundary boundary(simplified);
+  const RingBoundary boundary(simplified);
   double greatest = 0;
   for (std::size_t r = 0; r < source.size(); ++r) {
     const auto ring = source[r];

@@ -9,7 +9,7 @@ namespace trapeze::experiment {
 namespace {
 
 // Examining so few one by one is faster than putting them into a grid.
-constexpr std::size_t kFew = 24;
+constexpr std::size_t kFewVertices = 24;
 
 Point vertex(std::span<const Point> ring, std::uint32_t i) {
   return ring[i < ring.size() ? i : i - ring.size()];
@@ -126,7 +126,7 @@ void TopologyKeeper::collect_kept(const PolygonSet& polygons, std::uint32_t firs
 }
 
 void TopologyKeeper::KeptVertices::index() {
-  has_grid = points.size() > kFew;
+  has_grid = points.size() > kFewVertices;
   if (has_grid) grid.assign(points);
   is_indexed = true;
 }

@@ -14,8 +14,6 @@
 namespace trapeze {
 namespace {
 
-constexpr std::uint32_t kNobody = 0xffffffff;
-
 /// Heap operations; the smallest candidate is first.
 template <typename Candidate>
 void add_to(std::vector<Candidate>& retries, const std::type_identity_t<Candidate>& candidate) {

@@ -95,6 +95,7 @@ class PriorityStack {
     CornerId corner;
     std::uint32_t next;
   };
+  static constexpr std::uint32_t kNobody = 0xffffffff;  // instead of an index: the end of a list
   /// What is done differently while a batch is carried out; see batch_removal.h.
   class Batch {
    public:

@@ -12,7 +12,6 @@
 namespace trapeze {
 namespace {
 
-constexpr std::uint32_t kNobody = 0xffffffff;
 constexpr std::uint32_t kOfLane = 0x80000000;
 
 // With fewer removals, starting threads is not worthwhile.

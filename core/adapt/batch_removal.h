@@ -103,6 +103,7 @@ class BatchLane : public PriorityStack::Batch {
   using Candidate = PriorityStack::Candidate;
   using PutOff = PriorityStack::PutOff;
   using Waiting = PriorityStack::Waiting;
+  static constexpr std::uint32_t kNobody = PriorityStack::kNobody;
 
   std::optional<Candidate> next(const Candidate* end);
   void fetch_candidates() const;

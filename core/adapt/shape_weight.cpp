@@ -6,15 +6,13 @@
 namespace trapeze {
 namespace {
 
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
 // The factor for the area of a triangle without height.
 constexpr double kFlattest = 0.25;
 // The factor for a triangle whose tip is above an end of its base, or beyond it.
 constexpr double kSkewest = 0.75;
 // The factor for a triangle with a right angle: more than twice, so that both far corners of a bump
 // are removed before one of its corners is.
-constexpr double kRight = 4;
+constexpr double kRightAngled = 4;
 // An angle counts the more as right the nearer it is to a right angle, and not at all from a
 // deviation of about 10 degrees on: 1 over the square of its cosine at that limit.
 constexpr double kRightness = 33;
@@ -23,10 +21,6 @@ double squared_length(Point a, Point b) {
   const double dx = static_cast<double>(a.x) - b.x;
   const double dy = static_cast<double>(a.y) - b.y;
   return dx * dx + dy * dy;
-}
-
-double triangle_area(Point a, Point b, Point c) {
-  return std::abs(static_cast<double>(orientation(a, b, c))) / 2;
 }
 
 /// From kFlattest to 1, which is reached by the area of a triangle at least half as high as its
@@ -78,7 +72,7 @@ double cost_of_vertex(Point p, Point v, Point q) {
   const double filter =
       filter_of_flatness(area, squared_base) *
       filter_of_skewness(squared_length(v, p), squared_length(v, q), squared_base);
-  return area * (filter + rightness(p, v, q) * (kRight - filter));
+  return area * (filter + rightness(p, v, q) * (kRightAngled - filter));
 }
 
 // If both angles are right, and the new edge is neither parallel nor at right angles to the old
@@ -111,7 +105,7 @@ double cost_of_pair(Point p, Point v, Point w, Point q) {
   const double filter = filter_of_flatness(area, squared_length(p, q));
   const double right = std::min(rightness(p, v, w), rightness(v, w, q));
   const double lost = right * (1 - std::min(alignment(p, v, q), alignment(q, w, p)));
-  return area * (filter + lost * (kRight - filter));
+  return area * (filter + lost * (kRightAngled - filter));
 }
 
 /// For a heap with the least cost on top. For equal costs, one vertex comes before two, and then
@@ -153,7 +147,7 @@ void ShapeWeights::enqueue_pair(std::size_t first) {
 /// the same, so is the effect.
 bool ShapeWeights::is_stale(const Candidate& candidate) const {
   const std::size_t first = candidate.first;
-  if (before_[first] == kNone) return true;
+  if (before_[first] == kNoIndex) return true;
   if (first == candidate.last) return candidate.cost != cost_of_one_[first];
   return left_ < 4 || after_[first] != candidate.last || candidate.cost != cost_of_pair_[first];
 }
@@ -187,7 +181,7 @@ void ShapeWeights::weigh(std::span<const Point> points, Line line, std::span<dou
     const std::size_t q = after_[next.last];
     for (const std::size_t v : {next.first, next.last}) {
       weights[v] = std::sqrt(greatest);
-      before_[v] = kNone;
+      before_[v] = kNoIndex;
     }
     left_ -= next.first == next.last ? 1 : 2;
     after_[p] = q;

@@ -16,6 +16,7 @@
 // Thread-safety: one thread at a time per ShapeWeights.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,6 +25,14 @@
 #include "core/grid/grid.h"
 
 namespace trapeze {
+
+/// Instead of the index of a vertex: none.
+constexpr std::size_t kNoIndex = static_cast<std::size_t>(-1);
+
+/// The area of the triangle abc, in cells squared.
+inline double triangle_area(Point a, Point b, Point c) {
+  return std::abs(static_cast<double>(orientation(a, b, c))) / 2;
+}
 
 class ShapeWeights {
  public:

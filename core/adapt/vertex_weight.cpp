@@ -12,11 +12,6 @@ namespace trapeze {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-double triangle_area(Point a, Point b, Point c) {
-  return std::abs(static_cast<double>(orientation(a, b, c))) / 2;
-}
 
 }  // namespace
 
@@ -44,7 +39,7 @@ std::span<const double> VertexWeights::weigh_arc(std::span<const Point> arc, Wei
     shape_.weigh(arc, ShapeWeights::Line::arc, weights_);
   } else {
     farthest_.assign(arc);
-    pieces_.assign(1, {0, arc.size() - 1, kNone});
+    pieces_.assign(1, {0, arc.size() - 1, kNoIndex});
     split_pieces(arc, rule == WeightRule::raised_parents);
   }
   return weights_;
@@ -78,8 +73,8 @@ void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_pa
   const std::size_t a = anchors.first;
   const std::size_t b = anchors.second;
   pieces_.clear();
-  pieces_.push_back({a, b > a ? b : b + n, kNone});
-  pieces_.push_back({b, a > b ? a : a + n, kNone});
+  pieces_.push_back({a, b > a ? b : b + n, kNoIndex});
+  pieces_.push_back({b, a > b ? a : a + n, kNoIndex});
   split_pieces(ring, raise_parents);
 }
 
@@ -94,7 +89,9 @@ void VertexWeights::split_pieces(std::span<const Point> points, bool raise_paren
     const FarthestVertex::Found split = farthest_.find(piece.begin, piece.end);
     const std::size_t v = split.vertex < n ? split.vertex : split.vertex - n;
     double weight = std::sqrt(split.squared);
-    if (!raise_parents && piece.parent != kNone) weight = std::min(weight, weights_[piece.parent]);
+    if (!raise_parents && piece.parent != kNoIndex) {
+      weight = std::min(weight, weights_[piece.parent]);
+    }
     weights_[v] = weight;
     if (raise_parents) splits_.emplace_back(v, piece.parent);
     pieces_.push_back({piece.begin, split.vertex, v});
@@ -102,7 +99,7 @@ void VertexWeights::split_pieces(std::span<const Point> points, bool raise_paren
   }
   for (std::size_t i = splits_.size(); i > 0; --i) {
     const auto [v, parent] = splits_[i - 1];
-    if (parent != kNone) weights_[parent] = std::max(weights_[parent], weights_[v]);
+    if (parent != kNoIndex) weights_[parent] = std::max(weights_[parent], weights_[v]);
   }
 }
 
@@ -139,12 +136,12 @@ void VertexWeights::weigh_by_area(std::span<const Point> points, bool is_arc) {
     const Entry entry = queue.top();
     queue.pop();
     const std::size_t i = entry.vertex;
-    if (entry.area != area[i] || before_[i] == kNone) continue;
+    if (entry.area != area[i] || before_[i] == kNoIndex) continue;
     largest = std::max(largest, entry.area);
     weights_[i] = std::sqrt(largest);
     const std::size_t p = before_[i];
     const std::size_t q = after_[i];
-    before_[i] = kNone;
+    before_[i] = kNoIndex;
     after_[p] = q;
     before_[q] = p;
     --left;

@@ -13,7 +13,7 @@ namespace trapeze {
 namespace {
 
 /// The surroundings of a region.
-struct Place {
+struct Surroundings {
   std::vector<Segment> segments;
   double border = 0;  // cells
   std::vector<std::uint32_t> beyond;
@@ -34,7 +34,7 @@ class FaultSearch {
   std::vector<CoverageFault> find() {
     std::vector<CoverageFault> faults;
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      Place& place = places_[i];
+      Surroundings& place = places_[i];
       std::ranges::sort(place.beyond);
       place.beyond.erase(std::unique(place.beyond.begin(), place.beyond.end()), place.beyond.end());
       if (const auto& over = set_of(RegionId(i)); over.size() > 1) {
@@ -54,7 +54,7 @@ class FaultSearch {
   /// Records the edge for the region at its side, if that may be a fault.
   void add_edge(EdgeId e, RegionId region, Side beyond) {
     if (region == regions_.unbounded || set_of(region).size() == 1) return;
-    Place& place = places_[region.value];
+    Surroundings& place = places_[region.value];
     place.segments.push_back(map_.borders().segments[e.value]);
     place.border += length_of(g_, g_.edge(e));
     if (!set_of(region).empty()) return;
@@ -64,7 +64,7 @@ class FaultSearch {
 
   CoverageFault fault_at(RegionId region, FaultKind kind,
                          const std::vector<std::uint32_t>& features) {
-    const Place& place = places_[region.value];
+    const Surroundings& place = places_[region.value];
     const double metre = cells_from_ground(1, place.segments.front().first.y);
     CoverageFault fault;
     fault.kind = kind;
@@ -81,7 +81,7 @@ class FaultSearch {
   const TrapezoidalGraph& g_;
   const SetMap& map_;
   const Regions regions_;
-  std::vector<Place> places_;
+  std::vector<Surroundings> places_;
   Boundary boundary_;
   Trapezoidation trapezoidation_;
   BoundaryLoops loops_;

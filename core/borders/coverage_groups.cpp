@@ -26,20 +26,20 @@ std::vector<std::vector<std::uint32_t>> groups_of(DisjointSets& ties) {
 }
 
 /// The box of a feature.
-struct Place {
+struct FeatureBox {
   Box box;
   std::uint32_t feature;
 };
 
 /// From west to east.
-std::vector<Place> places_of(std::span<const Rings* const> features) {
-  std::vector<Place> places;
+std::vector<FeatureBox> places_of(std::span<const Rings* const> features) {
+  std::vector<FeatureBox> places;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
-    Place place{Box(), i};
+    FeatureBox place{Box(), i};
     for (const Point p : features[i]->points) place.box.include(p);
     if (!place.box.is_empty()) places.push_back(place);
   }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+  std::sort(places.begin(), places.end(), [](const FeatureBox& a, const FeatureBox& b) {
     return std::tuple(a.box.min_x, a.feature) < std::tuple(b.box.min_x, b.feature);
   });
   return places;
@@ -48,16 +48,16 @@ std::vector<Place> places_of(std::span<const Rings* const> features) {
 /// Calls visit(a, b) for every two places whose boxes intersect, for at most `most_steps` steps.
 /// Returns whether all have been found.
 template <typename Visit>
-bool for_each_meeting(const std::vector<Place>& places, std::size_t most_steps,
+bool for_each_meeting(const std::vector<FeatureBox>& places, std::size_t most_steps,
                       const Visit& visit) {
   // A sweep from west to east over the boxes, keeping those not passed yet.
-  std::vector<Place> open;
+  std::vector<FeatureBox> open;
   std::size_t steps = 0;
-  for (const Place& place : places) {
+  for (const FeatureBox& place : places) {
     steps += open.size();
     if (steps > most_steps) return false;
-    std::erase_if(open, [&](const Place& other) { return other.box.max_x < place.box.min_x; });
-    for (const Place& other : open) {
+    std::erase_if(open, [&](const FeatureBox& other) { return other.box.max_x < place.box.min_x; });
+    for (const FeatureBox& other : open) {
       if (other.box.intersects(place.box)) visit(other, place);
     }
     open.push_back(place);
@@ -70,16 +70,17 @@ bool for_each_meeting(const std::vector<Place>& places, std::size_t most_steps,
 std::vector<Box> common_boxes(std::span<const Rings* const> features) {
   constexpr std::size_t kMostStepsOfEach = 1024;  // cheaper than sorting the segments
   std::vector<Box> common(features.size());
-  const std::vector<Place> places = places_of(features);
+  const std::vector<FeatureBox> places = places_of(features);
   const bool are_all_found = for_each_meeting(
-      places, kMostStepsOfEach * places.size(), [&common](const Place& a, const Place& b) {
+      places, kMostStepsOfEach * places.size(),
+      [&common](const FeatureBox& a, const FeatureBox& b) {
         const Box both{std::max(a.box.min_x, b.box.min_x), std::max(a.box.min_y, b.box.min_y),
                        std::min(a.box.max_x, b.box.max_x), std::min(a.box.max_y, b.box.max_y)};
         common[a.feature].include(both);
         common[b.feature].include(both);
       });
   if (!are_all_found) {
-    for (const Place& place : places) common[place.feature] = place.box;
+    for (const FeatureBox& place : places) common[place.feature] = place.box;
   }
   return common;
 }
@@ -99,8 +100,9 @@ void tie_by_edges(std::span<const Rings* const> features, unsigned threads, Disj
 }
 
 void tie_by_boxes(std::span<const Rings* const> features, DisjointSets& ties) {
-  for_each_meeting(places_of(features), std::numeric_limits<std::size_t>::max(),
-                   [&ties](const Place& a, const Place& b) { ties.tie(a.feature, b.feature); });
+  for_each_meeting(
+      places_of(features), std::numeric_limits<std::size_t>::max(),
+      [&ties](const FeatureBox& a, const FeatureBox& b) { ties.tie(a.feature, b.feature); });
 }
 
 /// The features without known group and those that may be tied to one of them, in ascending order;
@@ -113,10 +115,10 @@ std::vector<std::uint32_t> to_be_looked_at(std::span<const Rings* const> feature
   const auto unknown = static_cast<std::size_t>(std::ranges::count(known, kUnknownGroup));
   if (known.empty() || unknown > features.size() / 4) return all;
 
-  const std::vector<Place> places = places_of(features);
-  std::vector<Place> wanted;
+  const std::vector<FeatureBox> places = places_of(features);
+  std::vector<FeatureBox> wanted;
   std::int64_t widest = 0;
-  for (const Place& place : places) {
+  for (const FeatureBox& place : places) {
     if (known[place.feature] != kUnknownGroup) continue;
     wanted.push_back(place);
     widest = std::max(widest, std::int64_t{place.box.max_x} - place.box.min_x);
@@ -124,7 +126,7 @@ std::vector<std::uint32_t> to_be_looked_at(std::span<const Rings* const> feature
   std::vector<std::uint32_t> found;
   std::size_t steps = 0;
   std::size_t first = 0;  // all before it end west of the place
-  for (const Place& place : places) {
+  for (const FeatureBox& place : places) {
     while (first < wanted.size() && wanted[first].box.min_x + widest < place.box.min_x) ++first;
     bool is_near = known[place.feature] == kUnknownGroup;
     for (std::size_t i = first; !is_near && i < wanted.size(); ++i, ++steps) {

@@ -186,8 +186,8 @@ struct Grown {
 };
 
 /// By feature; growth beside others after all other growth.
-std::vector<Grown> unite(const std::vector<Triangle>& triangles, unsigned threads,
-                         std::string& failure) {
+std::vector<Grown> unite_triangles(const std::vector<Triangle>& triangles, unsigned threads,
+                                   std::string& failure) {
   std::map<std::pair<bool, std::size_t>, std::vector<const Triangle*>> sorted;
   for (const Triangle& triangle : triangles) {
     sorted[{triangle.is_beside_others, BoundaryMap::number_of(triangle.face)}].push_back(&triangle);
@@ -345,7 +345,7 @@ GrownPolygons grow(std::span<DrawnPolygons* const> features, const GrowthSize& s
   }
   const std::vector<Triangle> triangles = Growth(beside, size, threads).find();
   if (triangles.empty()) return result;
-  const std::vector<Grown> grown = unite(triangles, threads, result.failure);
+  const std::vector<Grown> grown = unite_triangles(triangles, threads, result.failure);
   if (!result.failure.empty()) return result;
   std::optional<std::vector<Rings>> rings =
       GrownCoverage(beside, grown, threads).build(result.failure);

@@ -173,7 +173,7 @@ void append_normalized(std::span<const Point> ring, Rings& out) {
   out.add(points);
 }
 
-bool precedes(const Rings& a, const Rings& b) {
+bool rings_precede(const Rings& a, const Rings& b) {
   if (a.ends != b.ends) return a.ends < b.ends;
   return std::lexicographical_compare(a.points.begin(), a.points.end(), b.points.begin(),
                                       b.points.end(), is_above);
@@ -201,7 +201,7 @@ PartUnion unite_parts(Rings& rings, std::span<const std::uint32_t> part_ends) {
   if (!may_overlap(rings, part_ends)) return result;
   std::vector<Rings> parts = split(rings, part_ends);
   const std::size_t all = parts.size();
-  std::sort(parts.begin(), parts.end(), precedes);
+  std::sort(parts.begin(), parts.end(), rings_precede);
   parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
   result.did_overlap = parts.size() < all;
   if (parts.size() == 1 && result.did_overlap) rings = std::move(parts.front());

@@ -18,14 +18,14 @@ namespace {
 // For a square, area over diagonal is its width over the square root of two.
 constexpr double kWeightOfMeanWidth = 0.70710678118654752;
 
-struct Piece {
+struct TrapezoidAxis {
   Axis axis;
   double area = 0;
 };
 
 /// The trapezoid of a node as an axis: the longer of the lines between the middles of opposite
 /// sides. None if it has no height.
-std::optional<Piece> piece_of(const TrapezoidalGraph& graph, const Node& node) {
+std::optional<TrapezoidAxis> trapezoid_axis_of(const TrapezoidalGraph& graph, const Node& node) {
   const Point top = graph.point(node.end[kUp]);
   const Point bottom = graph.point(node.end[kDown]);
   if (top.y == bottom.y) return std::nullopt;
@@ -47,7 +47,7 @@ std::optional<Piece> piece_of(const TrapezoidalGraph& graph, const Node& node) {
   const bool is_wide = width > std::hypot(lean, height);
   const Axis axis = is_wide ? Axis{at(left.x_at(y), y), at(right.x_at(y), y)}
                             : Axis{at(middle_at(top.y), top.y), at(middle_at(bottom.y), bottom.y)};
-  return Piece{axis, width * height};
+  return TrapezoidAxis{axis, width * height};
 }
 
 }  // namespace
@@ -437,7 +437,7 @@ void RegionBorders::note_pieces(RegionId region, FaceId face, FaceId taker) {
     if (side_of(e, region) != kRight) continue;
     for (NodeId n = graph_->edge(e).extreme[kRight][kUp]; !n.is_none();
          n = graph_->node(n).link[kLeft][kDown]) {
-      const std::optional<Piece> piece = piece_of(*graph_, graph_->node(n));
+      const std::optional<TrapezoidAxis> piece = trapezoid_axis_of(*graph_, graph_->node(n));
       if (!piece) continue;
       sum += piece->area;
       taken_.push_back({piece->axis, piece->area, face, taker});

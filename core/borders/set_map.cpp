@@ -13,7 +13,7 @@ namespace {
 
 /// A segment that occurs twice in a feature is no border of it: both its sides are inside, or both
 /// are outside.
-Borders unite(const LargeArray<OwnedSegment>& pieces, FeatureSets& sets) {
+Borders unite_pieces(const LargeArray<OwnedSegment>& pieces, FeatureSets& sets) {
   Borders borders;
   borders.segments.reserve(pieces.size());
   borders.owners.reserve(pieces.size());
@@ -88,7 +88,7 @@ SetMap::SetMap(std::span<const Rings* const> features, unsigned threads)
     : threads_(threads), sets_(features.size()) {
   LargeArray<OwnedSegment> pieces = segments_of(features);
   sort_by_place(pieces, threads);
-  borders_ = unite(pieces, sets_);
+  borders_ = unite_pieces(pieces, sets_);
 }
 
 void SetMap::fail_to_node() {

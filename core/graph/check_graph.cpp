@@ -14,7 +14,7 @@ struct Fraction {
   Int128 den;
 };
 
-Fraction x_at(const TrapezoidalGraph& g, EdgeId e, VertexId at) {
+Fraction exact_x_at(const TrapezoidalGraph& g, EdgeId e, VertexId at) {
   const Point u = g.point(g.edge(e).end[kUp]);
   const Point l = g.point(g.edge(e).end[kDown]);
   const Point p = g.point(at);
@@ -105,8 +105,8 @@ class Checker {
       return;
     }
     for (const Direction d : {kUp, kDown}) {
-      const Fraction l = x_at(g_, n.edge[kLeft], n.end[d]);
-      const Fraction r = x_at(g_, n.edge[kRight], n.end[d]);
+      const Fraction l = exact_x_at(g_, n.edge[kLeft], n.end[d]);
+      const Fraction r = exact_x_at(g_, n.edge[kRight], n.end[d]);
       require(l.num * r.den <= r.num * l.den, "I3: the edges of node ", id.value, " cross");
     }
   }

@@ -10,6 +10,9 @@
 
 namespace trapeze {
 
+/// A fitting number of items for one call of the work if each of them takes little time.
+constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;
+
 /// Calls work(0), ..., work(count - 1), each once, on at most `max_threads` threads including the
 /// caller's, and returns when all calls have ended. If any call throws, rethrows one of the
 /// exceptions.

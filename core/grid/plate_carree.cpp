@@ -6,10 +6,11 @@
 #include <numbers>
 #include <vector>
 
+#include "core/grid/web_mercator.h"
+
 namespace trapeze {
 namespace {
 
-constexpr double kCellsPerRadian = static_cast<double>(kGridMax) / std::numbers::pi;
 // Keeps the poles finite, far outside the square.
 constexpr double kNearPole = std::numbers::pi / 2 - 1e-9;
 

@@ -8,7 +8,6 @@ namespace trapeze {
 namespace {
 
 constexpr double kCellsPerMetre = static_cast<double>(kGridMax) / kMercatorHalfSide;
-constexpr double kCellsPerRadian = static_cast<double>(kGridMax) / std::numbers::pi;
 constexpr double kDegree = std::numbers::pi / 180.0;
 // Keeps the poles finite, far outside the square.
 constexpr double kSineNearPole = 1 - 1e-15;

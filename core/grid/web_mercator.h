@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 
 #include "core/grid/grid.h"
 
@@ -25,6 +26,9 @@ GridPosition metres_from_grid(double x, double y);
 /// The length in cells of a length on the ground, at the latitude of `y` (cells): the map scale
 /// grows towards the poles.
 double cells_from_ground(double metres, double y);
+
+/// Of longitude, and of latitude at the equator.
+constexpr double kCellsPerRadian = static_cast<double>(kGridMax) / std::numbers::pi;
 
 struct LonLat {
   double lon = 0;  // degrees east

@@ -39,10 +39,6 @@ std::uint64_t bits_of(const Value& value) {
   return 0;
 }
 
-void require(bool condition, const char* words) {
-  if (!condition) throw std::invalid_argument(words);
-}
-
 template <typename T>
 std::size_t heap_bytes(const std::vector<T>& v) {
   return v.capacity() * sizeof(T);
@@ -160,23 +156,26 @@ std::size_t FeatureTable::memory() const {
 }
 
 void FeatureTable::check_cells() const {
-  require(columns_.size() == fields_.size(), "there is not one column a field");
-  require(ids_.size() < 0xffffffff, "there are too many features");
-  require(string_ends_.size() < kNullText, "there are too many texts");
+  require_valid(columns_.size() == fields_.size(), "there is not one column a field");
+  require_valid(ids_.size() < 0xffffffff, "there are too many features");
+  require_valid(string_ends_.size() < kNullText, "there are too many texts");
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const Column& column = columns_[i];
     const bool is_text = fields_[i].type == FieldType::text;
-    require(column.numbers.size() == (is_text ? 0 : ids_.size()),
-            "a column has not one number a row");
-    require(column.texts.size() == (is_text ? ids_.size() : 0), "a column has not one text a row");
+    require_valid(column.numbers.size() == (is_text ? 0 : ids_.size()),
+                  "a column has not one number a row");
+    require_valid(column.texts.size() == (is_text ? ids_.size() : 0),
+                  "a column has not one text a row");
     const std::size_t strings = string_ends_.size();
-    require(std::ranges::all_of(
-                column.texts, [strings](std::uint32_t t) { return t < strings || t == kNullText; }),
-            "a text is not there");
+    require_valid(
+        std::ranges::all_of(column.texts,
+                            [strings](std::uint32_t t) { return t < strings || t == kNullText; }),
+        "a text is not there");
   }
-  require(std::ranges::is_sorted(string_ends_), "texts are not in order");
-  require(string_ends_.empty() || string_ends_[string_ends_.size() - 1] <= string_bytes_.size(),
-          "texts end too late");
+  require_valid(std::ranges::is_sorted(string_ends_), "texts are not in order");
+  require_valid(
+      string_ends_.empty() || string_ends_[string_ends_.size() - 1] <= string_bytes_.size(),
+      "texts end too late");
 }
 
 void FeatureTable::check_types(std::span<const Value> values) const {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,6 +16,11 @@
 #include "core/grid/stored_array.h"
 
 namespace trapeze {
+
+/// Throws std::invalid_argument with these words if the condition does not hold.
+inline void require_valid(bool condition, const char* words) {
+  if (!condition) throw std::invalid_argument(words);
+}
 
 enum class FieldType : std::uint8_t { integer, real, text };
 

@@ -22,7 +22,6 @@ namespace {
 
 constexpr std::uint32_t kUnused = 0xffffffff;
 constexpr double kMostDoubledArea = 9e18;  // the limit of 64 bits
-constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;
 
 /// Calls work(begin, end) for chunks of the items, on up to `threads` threads.
 template <typename Work>
@@ -105,7 +104,7 @@ struct GrowingLayer {
   std::vector<FeatureOverlap> known;    // between features that are not compared
 };
 
-FeatureGrain stored(const Grain& grain) {
+FeatureGrain stored_grain(const Grain& grain) {
   const double doubled = std::clamp(2 * grain.area, -kMostDoubledArea, kMostDoubledArea);
   return {grain.axis.from, grain.axis.to, std::llround(doubled),
           grain.row,       grain.born,    grain.is_covered};
@@ -178,7 +177,7 @@ std::vector<FeatureGrain> take_grains(std::vector<Stock>& stocks,
   const auto as_it_is = [](auto&, const PartOf&) {};
   for (const Grain& grain :
        take_items(stocks, parts, &History::grains, &Stock::Part::grains, as_it_is)) {
-    grains.push_back(stored(grain));
+    grains.push_back(stored_grain(grain));
   }
   return grains;
 }

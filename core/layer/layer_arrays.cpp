@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <stdexcept>
 #include <utility>
 
 #include "core/grid/for_each_in_parallel.h"
@@ -11,12 +10,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;
-constexpr std::size_t kMostItems = 0xffffffff;  // what 32-bit indices can distinguish
-
-void require(bool condition, const char* words) {
-  if (!condition) throw std::invalid_argument(words);
-}
+constexpr std::size_t kMostIndexable = 0xffffffff;  // what 32-bit indices can distinguish
 
 /// Whether holds(item) is true for all items, checked on all cores.
 template <typename T, typename Holds>
@@ -56,73 +50,75 @@ bool lies_between_its_edges(const LayerArrays& a, const MeshTrapezoid& t) {
 void check_mesh(const LayerArrays& a) {
   const std::size_t vertices = a.vertices.size();
   const std::size_t edges = a.edges.size();
-  require(std::max({vertices, edges, a.trapezoids.size()}) <= kMostItems,
-          "there is too much of it");
-  require(all_of(a.vertices, kIsOnGrid), "a vertex is not on the grid");
-  require(
+  require_valid(std::max({vertices, edges, a.trapezoids.size()}) <= kMostIndexable,
+                "there is too much of it");
+  require_valid(all_of(a.vertices, kIsOnGrid), "a vertex is not on the grid");
+  require_valid(
       all_of(a.edges,
              [vertices](const MeshEdge& e) { return e.upper < vertices && e.lower < vertices; }),
       "an end of an edge is not there");
-  require(all_of(a.trapezoids,
-                 [&](const MeshTrapezoid& t) {
-                   return t.top < vertices && t.bottom < vertices && t.left < edges &&
-                          t.right < edges && lies_between_its_edges(a, t);
-                 }),
-          "a trapezoid does not lie between its edges");
-  require(a.lifespans.size() == a.trapezoids.size(), "there is not one lifespan a trapezoid");
+  require_valid(all_of(a.trapezoids,
+                       [&](const MeshTrapezoid& t) {
+                         return t.top < vertices && t.bottom < vertices && t.left < edges &&
+                                t.right < edges && lies_between_its_edges(a, t);
+                       }),
+                "a trapezoid does not lie between its edges");
+  require_valid(a.lifespans.size() == a.trapezoids.size(), "there is not one lifespan a trapezoid");
 }
 
 void check_outline(const LayerArrays& a) {
   const OutlineView& outline = a.outline;
-  require(outline.loop_sizes.size() <= a.edges.size(), "there are loops without edges");
-  require(outline.milestone_ends.size() <= a.vertices.size() &&
-              is_sorted_up_to(outline.milestone_ends, outline.milestones.size()) &&
-              outline.milestone_levels.size() == outline.milestones.size(),
-          "milestones are not in order");
+  require_valid(outline.loop_sizes.size() <= a.edges.size(), "there are loops without edges");
+  require_valid(outline.milestone_ends.size() <= a.vertices.size() &&
+                    is_sorted_up_to(outline.milestone_ends, outline.milestones.size()) &&
+                    outline.milestone_levels.size() == outline.milestones.size(),
+                "milestones are not in order");
 }
 
 void check_features(const LayerArrays& a) {
   const std::size_t rows = a.cells.ids.size();
-  require(a.feature_of.size() <= a.trapezoids.size(), "there is dust that has a feature");
-  require(all_of(a.feature_of, [rows](std::uint32_t row) { return row < rows; }),
-          "the feature of a trapezoid is not there");
-  require(all_of(a.grains,
-                 [rows](const FeatureGrain& grain) {
-                   return grain.row < rows && grain.born <= kLastLevel && grain.is_covered <= 1 &&
-                          kIsOnGrid(grain.from) && kIsOnGrid(grain.to);
-                 }),
-          "a grain of dust has no feature or no place");
-  require(a.outline_ends.size() <= rows, "there are outlines without a feature");
-  require(is_sorted_up_to(a.outline_ends, a.ring_ends.size()), "outlines are not in order");
-  require(is_sorted_up_to(a.ring_ends, a.outline_points.size()), "rings are not in order");
-  require(all_of(a.outline_points, kIsOnGrid), "a point of an outline is not on the grid");
+  require_valid(a.feature_of.size() <= a.trapezoids.size(), "there is dust that has a feature");
+  require_valid(all_of(a.feature_of, [rows](std::uint32_t row) { return row < rows; }),
+                "the feature of a trapezoid is not there");
+  require_valid(all_of(a.grains,
+                       [rows](const FeatureGrain& grain) {
+                         return grain.row < rows && grain.born <= kLastLevel &&
+                                grain.is_covered <= 1 && kIsOnGrid(grain.from) &&
+                                kIsOnGrid(grain.to);
+                       }),
+                "a grain of dust has no feature or no place");
+  require_valid(a.outline_ends.size() <= rows, "there are outlines without a feature");
+  require_valid(is_sorted_up_to(a.outline_ends, a.ring_ends.size()), "outlines are not in order");
+  require_valid(is_sorted_up_to(a.ring_ends, a.outline_points.size()), "rings are not in order");
+  require_valid(all_of(a.outline_points, kIsOnGrid), "a point of an outline is not on the grid");
 }
 
 void check_units(const LayerArrays& a) {
   const std::size_t rows = a.cells.ids.size();
   const BuiltUnitsView& units = a.units;
   const auto is_row = [rows](const auto& unit) { return unit.row < rows; };
-  require(all_of(units.features, is_row) && all_of(units.members, is_row),
-          "the feature of a unit is not there");
+  require_valid(all_of(units.features, is_row) && all_of(units.members, is_row),
+                "the feature of a unit is not there");
   const auto is_sorted = [&units](auto end, std::size_t all) {
     return std::ranges::is_sorted(units.groups, {}, end) &&
            (units.groups.empty() ? 0 : units.groups.back().*end) == all;
   };
-  require(is_sorted(&GroupUnit::members_end, units.members.size()) &&
-              is_sorted(&GroupUnit::overlaps_end, units.overlaps.size()),
-          "groups are not in order");
+  require_valid(is_sorted(&GroupUnit::members_end, units.members.size()) &&
+                    is_sorted(&GroupUnit::overlaps_end, units.overlaps.size()),
+                "groups are not in order");
 }
 
 void check_sums(const LayerArrays& a) {
-  require(a.single_motes <= a.trapezoids.size() - a.feature_of.size(), "there is too much dust");
-  require(a.horizontal_edges <= a.feature_of.size() &&
-              a.size.trapezoids == a.feature_of.size() - a.horizontal_edges &&
-              a.size.motes == a.trapezoids.size() - a.feature_of.size(),
-          "the sums are not those of the trapezoids");
+  require_valid(a.single_motes <= a.trapezoids.size() - a.feature_of.size(),
+                "there is too much dust");
+  require_valid(a.horizontal_edges <= a.feature_of.size() &&
+                    a.size.trapezoids == a.feature_of.size() - a.horizontal_edges &&
+                    a.size.motes == a.trapezoids.size() - a.feature_of.size(),
+                "the sums are not those of the trapezoids");
   const Box& box = a.bounds;
-  require(box == Box() || (!box.is_empty() && kIsOnGrid({box.min_x, box.min_y}) &&
-                           kIsOnGrid({box.max_x, box.max_y})),
-          "the bounds are not on the grid");
+  require_valid(box == Box() || (!box.is_empty() && kIsOnGrid({box.min_x, box.min_y}) &&
+                                 kIsOnGrid({box.max_x, box.max_y})),
+                "the bounds are not on the grid");
 }
 
 TrapezoidRange between(std::size_t begin, std::size_t end) {

@@ -34,7 +34,7 @@ void note_shared(const FaceFeatures& rows, std::vector<FeatureOverlap>& shared) 
   }
 }
 
-std::uint32_t stored(std::size_t count) {
+std::uint32_t stored_count(std::size_t count) {
   return static_cast<std::uint32_t>(count);  // known to be countable
 }
 
@@ -43,8 +43,8 @@ FeatureUnit unit_of(const Digest& digest, std::uint32_t row, const BuildOutcome&
   return {digest,
           StoredTolerance(most_tolerance),
           row,
-          stored(outcome.vertices),
-          stored(outcome.collapsed_rings),
+          stored_count(outcome.vertices),
+          stored_count(outcome.collapsed_rings),
           outcome.noded};
 }
 
@@ -70,10 +70,10 @@ void add_group(std::span<const Digest> digests, std::span<const std::uint32_t> r
                               std::bit_cast<std::uint64_t>(outcome.areas[overlap.lower])});
   }
   units.groups.push_back({digest_of(digests), StoredTolerance(most_tolerance),
-                          stored(units.members.size()), stored(units.overlaps.size()),
-                          stored(outcome.vertices), stored(outcome.shared_edges),
-                          stored(outcome.junctions), stored(outcome.gaps), stored(outcome.filled),
-                          outcome.noded, outcome.is_crowded});
+                          stored_count(units.members.size()), stored_count(units.overlaps.size()),
+                          stored_count(outcome.vertices), stored_count(outcome.shared_edges),
+                          stored_count(outcome.junctions), stored_count(outcome.gaps),
+                          stored_count(outcome.filled), outcome.noded, outcome.is_crowded});
 }
 
 Assembly assembly_of(const BuiltUnitsView& units, std::uint32_t number) {

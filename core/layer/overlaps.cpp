@@ -21,7 +21,6 @@ constexpr std::size_t kMostPairsOf = 16;                   // per trapezoid
 constexpr std::size_t kLeastPairs = std::size_t{1} << 20;  // 12 MB
 constexpr std::uint64_t kMostStepsOf = 1024;               // per trapezoid
 constexpr int kMostHalvings = 64;
-constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;  // per thread
 constexpr std::size_t kRowsAtOnce = 1024;
 constexpr std::uint64_t kLeastSteps = std::uint64_t{1} << 24;
 

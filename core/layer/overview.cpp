@@ -15,7 +15,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::uint32_t kUnused = 0xffffffff;
+constexpr std::uint32_t kLeftOut = 0xffffffff;  // instead of a number in the overview
 
 /// Trapezoids, or horizontal edges, in the order of the parts.
 struct Pieces {
@@ -64,9 +64,9 @@ class OverviewBuilder::Adding {
       : state_(state),
         part_(part),
         from_(arrays_of(part)),
-        rows_(from_.cells.ids.size(), kUnused),
-        edges_(from_.edges.size(), kUnused),
-        vertices_(from_.vertices.size(), kUnused) {}
+        rows_(from_.cells.ids.size(), kLeftOut),
+        edges_(from_.edges.size(), kLeftOut),
+        vertices_(from_.vertices.size(), kLeftOut) {}
 
   void add() {
     number_rows();
@@ -90,7 +90,7 @@ class OverviewBuilder::Adding {
       state_.grains.push_back(grain);
     }
     for (const FeatureOverlap& pair : from_.overlaps) {
-      if (rows_[pair.row] == kUnused || rows_[pair.other] == kUnused) continue;
+      if (rows_[pair.row] == kLeftOut || rows_[pair.other] == kLeftOut) continue;
       state_.overlaps.push_back({rows_[pair.row], rows_[pair.other], pair.width, pair.along});
     }
     state_.bounds.include(from_.bounds);
@@ -109,12 +109,12 @@ class OverviewBuilder::Adding {
       if (grain.born > state_.first_level) rows_[grain.row] = 0;
     }
     for (std::size_t old = 0; old < rows_.size(); ++old) {
-      if (rows_[old] != kUnused) rows_[old] = state_.features.append(from_.cells.ids[old], {});
+      if (rows_[old] != kLeftOut) rows_[old] = state_.features.append(from_.cells.ids[old], {});
     }
   }
 
   std::uint32_t edge(std::uint32_t old) {
-    if (edges_[old] != kUnused) return edges_[old];
+    if (edges_[old] != kLeftOut) return edges_[old];
     const MeshEdge& e = from_.edges[old];
     const MeshEdge now{vertex(e.upper), vertex(e.lower)};
     edges_[old] = static_cast<std::uint32_t>(state_.edges.size());
@@ -125,7 +125,7 @@ class OverviewBuilder::Adding {
   }
 
   std::uint32_t vertex(std::uint32_t old) {
-    if (vertices_[old] != kUnused) return vertices_[old];
+    if (vertices_[old] != kLeftOut) return vertices_[old];
     vertices_[old] = static_cast<std::uint32_t>(state_.vertices.size());
     state_.vertices.push_back(from_.vertices[old]);
     require_countable(state_.vertices.size(), "vertices");

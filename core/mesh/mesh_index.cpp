@@ -130,13 +130,13 @@ std::uint64_t order_key(const Box& box, Lifespan lifespan) {
 MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range,
                      std::span<const Lifespan> lifespans, unsigned threads)
     : range_(range), heights_(heights_over(range.count, kFanout)) {
-  constexpr std::size_t kItemsAtOnce = std::size_t{1} << 14;
-  static_assert(kItemsAtOnce % kFanout == 0);
+  constexpr std::size_t kTrapezoidsAtOnce = std::size_t{1} << 14;
+  static_assert(kTrapezoidsAtOnce % kFanout == 0);
   std::vector<Entry> entries(heights_.back());
-  const std::size_t pieces = (range.count + kItemsAtOnce - 1) / kItemsAtOnce;
+  const std::size_t pieces = (range.count + kTrapezoidsAtOnce - 1) / kTrapezoidsAtOnce;
   for_each_in_parallel(pieces, threads, [&](std::size_t piece) {
-    const std::size_t end = std::min<std::size_t>(range.count, (piece + 1) * kItemsAtOnce);
-    for (std::size_t i = piece * kItemsAtOnce; i < end; ++i) {
+    const std::size_t end = std::min<std::size_t>(range.count, (piece + 1) * kTrapezoidsAtOnce);
+    for (std::size_t i = piece * kTrapezoidsAtOnce; i < end; ++i) {
       Entry& entry = entries[i / kFanout];
       const std::size_t t = range.first + i;
       entry.box.include(box_of(mesh, mesh.trapezoids[t]));

@@ -10,8 +10,8 @@ namespace {
 constexpr double kSizesPerOctave = 8;
 constexpr double kLeastStretch = 0.75;
 constexpr double kMostStretch = 8;
-constexpr double kMostOfFirst = 1.5;  // of the presumed length of the first edge of a loop
-constexpr double kRounding = 2;       // cells: milestones are whole ones
+constexpr double kMostOfFirst = 1.5;      // of the presumed length of the first edge of a loop
+constexpr double kMilestoneRounding = 2;  // cells: milestones are whole ones
 
 double length_of(const MeshView& mesh, const MeshEdge& edge) {
   const Point a = mesh.vertices[edge.upper];
@@ -29,8 +29,8 @@ struct AlongEnds {
 };
 AlongEnds along_from_beginning(Milestone other, double length) {
   const double along = other;
-  const bool is_first =
-      along >= kLeastStretch * length - kRounding && along <= kMostOfFirst * length + kRounding;
+  const bool is_first = along >= kLeastStretch * length - kMilestoneRounding &&
+                        along <= kMostOfFirst * length + kMilestoneRounding;
   if (is_first) return {0, along};
   return {along + length, along};
 }
@@ -59,8 +59,8 @@ Milestone OutlineView::milestone(std::uint32_t vertex, Level level) const {
 
 Stretch stretch_between(Milestone from, Milestone to, double edge_length) {
   const double length = static_cast<std::int32_t>(to - from);
-  const bool fits = std::abs(length) >= kLeastStretch * edge_length - kRounding &&
-                    std::abs(length) <= kMostStretch * edge_length + kRounding;
+  const bool fits = std::abs(length) >= kLeastStretch * edge_length - kMilestoneRounding &&
+                    std::abs(length) <= kMostStretch * edge_length + kMilestoneRounding;
   return {fits, length};
 }
 

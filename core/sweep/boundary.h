@@ -22,6 +22,12 @@ constexpr std::uint64_t sweep_key(Point p) {
          (static_cast<std::uint32_t>(p.x) ^ kBias);
 }
 
+/// Positive if p lies right of the segment (on the sweep line through p), negative if left, 0 if on
+/// its line.
+constexpr std::int64_t side_of(Point upper, Point lower, Point p) {
+  return -orientation(upper, lower, p);
+}
+
 /// Vertices 1 .. n are the distinct points in sweep order; vertices 0 and n + 1 belong to the frame
 /// and have no edges here. Memory is kept for reuse. Thread-safety: none.
 struct Boundary {

@@ -12,12 +12,6 @@
 namespace trapeze {
 namespace {
 
-/// Positive if p lies right of the segment (on the sweep line through p), negative if left, 0 if on
-/// its line.
-std::int64_t side_of(Point upper, Point lower, Point p) {
-  return -orientation(upper, lower, p);
-}
-
 /// floor(a / b + 1/2) for b > 0.
 Int128 round_half_up(Int128 a, Int128 b) {
   const Int128 n = 2 * a + b;

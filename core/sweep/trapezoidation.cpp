@@ -12,12 +12,6 @@
 namespace trapeze {
 namespace {
 
-/// Negative if p lies left of the edge (on the sweep line through p), positive if right, 0 if on
-/// it.
-std::int64_t side_of(Point upper, Point lower, Point p) {
-  return -orientation(upper, lower, p);
-}
-
 /// Sorts edges that start at v from left to right; false if two of them coincide there.
 bool sort_around(const Boundary& boundary, VertexId v, std::vector<EdgeId>& starting) {
   if (starting.size() < 2) return true;

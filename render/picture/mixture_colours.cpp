@@ -24,7 +24,7 @@ std::uint64_t partial_bytes(std::uint64_t bytes) {
 }
 
 /// The highest bits of those bytes that are not 0.
-std::uint64_t set_bytes(std::uint64_t bytes) {
+std::uint64_t nonzero_bytes(std::uint64_t bytes) {
   return (((bytes & kLowBits) + kLowBits) | bytes) & ~kLowBits;
 }
 
@@ -209,7 +209,8 @@ void MixtureColours::take_values(std::size_t mixture) {
       }
       ++partial_count_;
     }
-    for (std::uint64_t rest = set_bytes(word) & relation_bits_[i]; rest != 0; rest &= rest - 1) {
+    for (std::uint64_t rest = nonzero_bytes(word) & relation_bits_[i]; rest != 0;
+         rest &= rest - 1) {
       ++meeting_count_;
     }
   }

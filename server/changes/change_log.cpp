@@ -1,5 +1,6 @@
 #include "server/changes/change_log.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -210,16 +211,17 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
         layer.is_everything = !found;
         if (found) layer.tiles = *std::move(found);
       } catch (const std::exception& error) {  // when memory runs out
-        spdlog::error("changes of layer {}: {}", name, failure_words(error));
+        spdlog::error(fmt::format("changes of layer {}: {}", name, failure_words(error)));
         layer.is_everything = true;
       }
     }
-    spdlog::info("{}: {} from generation {} to {}", name,
-                 layer.is_everything ? "all tiles may look different"
-                                     : fmt::format("{} tiles of zooms {} to {} may look different",
-                                                   layer.tiles.tiles.size(),
-                                                   layer.tiles.zooms.first, layer.tiles.zooms.last),
-                 step.since, step.generation);
+    spdlog::info(fmt::format(
+        "{}: {} from generation {} to {}", name,
+        layer.is_everything
+            ? "all tiles may look different"
+            : fmt::format("{} tiles of zooms {} to {} may look different", layer.tiles.tiles.size(),
+                          layer.tiles.zooms.first, layer.tiles.zooms.last),
+        step.since, step.generation));
     layers.push_back(std::move(layer));
   }
   return layers;
@@ -248,9 +250,9 @@ void ChangeLog::run_command(const Sum& changes) {
         options_.command,
         {{"TRAPEZE_SINCE", changes.since}, {"TRAPEZE_GENERATION", changes.generation}},
         change_lines(in_order(changes.layers)), is_stopping);
-    if (status != 0) spdlog::error("changes.command exited with status {}", status);
+    if (status != 0) spdlog::error(fmt::format("changes.command exited with status {}", status));
   } catch (const std::exception& error) {
-    spdlog::error("changes.command cannot be run: {}", failure_words(error));
+    spdlog::error(fmt::format("changes.command cannot be run: {}", failure_words(error)));
   }
 }
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
@@ -91,10 +92,10 @@ int run_render(const RenderArguments& arguments) {
   write_file(arguments.output, *tile.bytes);
   const PaintTimes& times = tile.times;
   spdlog::info(
-      "{}: {} bytes; select {:.2f}, draw {:.2f}, read {:.2f}, resolve {:.2f}, compose "
-      "{:.2f}, encode {:.2f} ms",
-      arguments.output, tile.bytes->size(), times.select_ms, times.draw_ms, times.read_ms,
-      times.resolve_ms, times.compose_ms, times.encode_ms);
+      fmt::format("{}: {} bytes; select {:.2f}, draw {:.2f}, read {:.2f}, resolve {:.2f}, compose "
+                  "{:.2f}, encode {:.2f} ms",
+                  arguments.output, tile.bytes->size(), times.select_ms, times.draw_ms,
+                  times.read_ms, times.resolve_ms, times.compose_ms, times.encode_ms));
   return 0;
 }
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -83,11 +84,11 @@ class ProgressLine {
     const double done = done_before_ + progress.cost;
     const double left = seconds * std::max(cost_ - done, 0.0) / std::max(progress.cost, 1.0);
     const std::uint64_t drawn = progress.figures.drawn - progress.reused;
-    spdlog::info("{:.1f} %: {} tiles drawn, {:.0f} a second; {} known without; about {} left",
-                 100 * done / std::max(cost_, 1.0), number_words(drawn),
-                 static_cast<double>(drawn) / seconds,
-                 number_words(progress.figures.known + progress.figures.alone),
-                 duration_words(left));
+    spdlog::info(fmt::format(
+        "{:.1f} %: {} tiles drawn, {:.0f} a second; {} known without; about {} left",
+        100 * done / std::max(cost_, 1.0), number_words(drawn),
+        static_cast<double>(drawn) / seconds,
+        number_words(progress.figures.known + progress.figures.alone), duration_words(left)));
   }
 
  private:
@@ -250,8 +251,8 @@ void make_archive(const std::vector<std::string>& logs, const std::string& outpu
   const auto begin = Clock::now();
   const SeedLogs parts(logs);
   join_into_archive(parts, output, options);
-  spdlog::info("{}: {}; put together in {}", output, figures_words(parts.figures()),
-               duration_words(seconds_since(begin)));
+  spdlog::info(fmt::format("{}: {}; put together in {}", output, figures_words(parts.figures()),
+                           duration_words(seconds_since(begin))));
 }
 
 void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder) {
@@ -263,7 +264,8 @@ void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder)
   for (const std::uint64_t job : log.done()) done += work.jobs.jobs[job].cost;
   const double cost = work.jobs.cost(work.range);
   if (!log.done().empty()) {
-    spdlog::info("{}: resuming, {:.1f} % were done before", path, 100 * done / std::max(cost, 1.0));
+    spdlog::info(fmt::format("{}: resuming, {:.1f} % were done before", path,
+                             100 * done / std::max(cost, 1.0)));
   }
   const auto begin = Clock::now();
   SeedProgress last;
@@ -273,10 +275,11 @@ void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder)
     line(progress);
   });
   const double seconds = seconds_since(begin);
-  spdlog::info("{}: {}; {} in {}, {:.0f} drawn a second", path,
-               figures_words(last.figures, !arguments.update.empty(), last.reused),
-               bytes_words(static_cast<double>(log.bytes_of_data())), duration_words(seconds),
-               static_cast<double>(last.figures.drawn - last.reused) / std::max(seconds, 1e-3));
+  spdlog::info(
+      fmt::format("{}: {}; {} in {}, {:.0f} drawn a second", path,
+                  figures_words(last.figures, !arguments.update.empty(), last.reused),
+                  bytes_words(static_cast<double>(log.bytes_of_data())), duration_words(seconds),
+                  static_cast<double>(last.figures.drawn - last.reused) / std::max(seconds, 1e-3)));
 }
 
 /// Layers and styles are checked on the machines that will seed: here, only arguments that can be

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -89,7 +90,7 @@ void check_files_exist(const std::vector<LayerConfig>& layers) {
 void warn_of_other_changes(const Config& running, const Config& now) {
   for (const auto& setting : config_settings()) {
     if (setting.get(running) == setting.get(now)) continue;
-    spdlog::warn("{} has changed: restart the server to apply it", setting.name());
+    spdlog::warn(fmt::format("{} has changed: restart the server to apply it", setting.name()));
   }
   const auto is_same = [](const auto& a, const auto& b) {
     return a.first == b.first && a.second.canonical_text() == b.second.canonical_text();
@@ -152,8 +153,8 @@ int run_serve(const ServeArguments& arguments) {
   ServerLog log;
   const Config config = configure(arguments);
   if (!arguments.is_verbose) spdlog::set_level(spdlog::level::from_str(config.log.level));
-  spdlog::info("trapeze {} (build {})", version(), build_id());
-  if (!arguments.config.empty()) spdlog::info("configuration: {}", arguments.config);
+  spdlog::info(fmt::format("trapeze {} (build {})", version(), build_id()));
+  if (!arguments.config.empty()) spdlog::info(fmt::format("configuration: {}", arguments.config));
   check_files_exist(config.layers);
   Service service(config, layer_source(arguments, config));
   service.act_on_signals();

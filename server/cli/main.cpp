@@ -559,7 +559,8 @@ void add_seed(CLI::App& app, trapeze::SeedArguments& arguments) {
       ->type_name("SYSTEM");
   add_number(*seed, "--parts", "N", "The number of parts for --jobs",
              [&arguments](const std::string& option, const std::string& text) {
-               arguments.parts = trapeze::integer_or_throw(option, text, 1, trapeze::kMostParts);
+               arguments.parts =
+                   trapeze::integer_or_throw(option, text, 1, trapeze::kMostBatchParts);
              });
 }
 

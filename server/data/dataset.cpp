@@ -1,5 +1,6 @@
 #include "server/data/dataset.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -40,65 +41,68 @@ void add_value(ContentHash& hash, const Value& value) {
 void log_notes(const LoadReport& report) {
   const std::vector<std::string> lines = summarize_notes(report.notes);
   for (std::size_t i = 0; i < lines.size() && i < kMaxLoggedNotes; ++i) {
-    spdlog::warn("{}: {}", report.path, lines[i]);
+    spdlog::warn(fmt::format("{}: {}", report.path, lines[i]));
   }
   if (lines.size() < report.notes.size()) {
-    spdlog::warn("{}: `trapeze check` lists all notes", report.path);
+    spdlog::warn(fmt::format("{}: `trapeze check` lists all notes", report.path));
   }
 }
 
 void log_missing_title(const ServedLayer& served) {
   const std::string& wanted = served.config.title_attribute;
   if (wanted.empty() || title_field(served.layer->features(), wanted)) return;
-  spdlog::warn(R"(layer "{}" has no attribute "{}": its features have no title)",
-               served.config.name, wanted);
+  spdlog::warn(fmt::format(R"(layer "{}" has no attribute "{}": its features have no title)",
+                           served.config.name, wanted));
 }
 
 /// Logs problems of a layer in parts that do not prevent it from being served.
 void log_parts(const LoadReport& report, const PreparedParts& parts) {
-  spdlog::info("{}: {} parts, each loaded when needed", report.path, parts.parts().size());
+  spdlog::info(
+      fmt::format("{}: {} parts, each loaded when needed", report.path, parts.parts().size()));
   if (parts.overview() != nullptr || parts.parts().size() == 1) return;
-  spdlog::warn(
+  spdlog::warn(fmt::format(
       "{}: there is no overview, so a tile of a low zoom reads every part; `trapeze prepare "
       "--join` makes one",
-      report.path);
+      report.path));
 }
 
 void log_report(const ServedLayer& served) {
   const LoadReport& report = served.report;
-  spdlog::info(
+  spdlog::info(fmt::format(
       "{}: {} of {} features, {} polygons, {} rings, {} vertices, {} trapezoids, {:.1f} MB, "
       "{:.2f} s ({})",
       report.path, report.loaded, report.features, report.polygons, report.rings, report.vertices,
       served.trapezoids(), static_cast<double>(served.memory_of_tested()) / 1e6,
-      report.total_seconds, report.origin());
+      report.total_seconds, report.origin()));
   if (served.parts != nullptr) log_parts(report, *served.parts);
   if (report.taken_over > 0) {
-    spdlog::info("{}: {} features are unchanged and reused", report.path, report.taken_over);
+    spdlog::info(
+        fmt::format("{}: {} features are unchanged and reused", report.path, report.taken_over));
   }
   if (report.other_geometry > 0) {
-    spdlog::info("{}: {} features are not polygons and are not drawn", report.path,
-                 report.other_geometry);
+    spdlog::info(fmt::format("{}: {} features are not polygons and are not drawn", report.path,
+                             report.other_geometry));
   }
   if (report.empty > 0) {
-    spdlog::info("{}: {} polygons are smaller than the grid, or outside of the world", report.path,
-                 report.empty);
+    spdlog::info(fmt::format("{}: {} polygons are smaller than the grid, or outside of the world",
+                             report.path, report.empty));
   }
   const CoverageCounts& coverage = report.coverage;
   if (coverage.groups > 0) {
-    spdlog::info(
+    spdlog::info(fmt::format(
         "{}: {} features share borders, in {} groups: {} shared edges, {} junctions; {} features "
         "overlap others by too much and are simplified separately",
         report.path, coverage.features, coverage.groups, coverage.shared_edges, coverage.junctions,
-        coverage.apart);
+        coverage.apart));
   }
   if (report.repaired > 0 || report.skipped > 0 || report.coverage.overlaps > 0) {
-    spdlog::warn("{}: {} features repaired, {} skipped, {} pairs overlap", report.path,
-                 report.repaired, report.skipped, report.coverage.overlaps);
+    spdlog::warn(fmt::format("{}: {} features repaired, {} skipped, {} pairs overlap", report.path,
+                             report.repaired, report.skipped, report.coverage.overlaps));
   }
-  for (const std::string& warning : report.warnings) spdlog::warn("{}: {}", report.path, warning);
+  for (const std::string& warning : report.warnings)
+    spdlog::warn(fmt::format("{}: {}", report.path, warning));
   log_notes(report);
-  if (report.loaded == 0) spdlog::warn("{}: contains no polygon to draw", report.path);
+  if (report.loaded == 0) spdlog::warn(fmt::format("{}: contains no polygon to draw", report.path));
 }
 
 /// The combined progress of layers that load at the same time: the mean of their shares.
@@ -366,7 +370,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& con
     const auto show = [&progress, i](double share) { progress.show(i, share); };
     if (auto kept = unchanged_layer(layers[i], previous)) {
       served[i] = *std::move(kept);
-      spdlog::info("{}: unchanged, not read again", served[i].report.path);
+      spdlog::info(fmt::format("{}: unchanged, not read again", served[i].report.path));
       show(1);
       progress.finish(i);
     } else {

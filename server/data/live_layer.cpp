@@ -1,5 +1,6 @@
 #include "server/data/live_layer.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -97,10 +98,10 @@ std::optional<ServedLayer> LiveLayer::patch(std::span<const std::int64_t> ids) {
   changed_.insert(ids.begin(), ids.end());
   take_step(std::move(changes), revision_of(features));
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  spdlog::info("layer \"{}\": {} features have changed, {} were rebuilt, {:.0f} ms", config_.name,
-               ids.size(), features.features().size(), took.count());
+  spdlog::info(fmt::format("layer \"{}\": {} features have changed, {} were rebuilt, {:.0f} ms",
+                           config_.name, ids.size(), features.features().size(), took.count()));
   if (const std::size_t skipped = reading->features.report.skipped; skipped > 0) {
-    spdlog::warn("layer \"{}\": {} of them were skipped", config_.name, skipped);
+    spdlog::warn(fmt::format("layer \"{}\": {} of them were skipped", config_.name, skipped));
   }
   return served_;
 }

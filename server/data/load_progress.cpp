@@ -1,5 +1,6 @@
 #include "server/data/load_progress.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -52,9 +53,9 @@ void LoadProgress::draw_bar(double share) const {
 void LoadProgress::log_line(double share) const {
   const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
   if (share < 0) {
-    spdlog::info("loading {}: {:.0f} s so far", name_, seconds);
+    spdlog::info(fmt::format("loading {}: {:.0f} s so far", name_, seconds));
   } else {
-    spdlog::info("loading {}: {:.0f} % after {:.0f} s", name_, share * 100, seconds);
+    spdlog::info(fmt::format("loading {}: {:.0f} % after {:.0f} s", name_, share * 100, seconds));
   }
 }
 
@@ -96,10 +97,10 @@ void StallWatch::look() {
   for (Source& source : sources_) {
     if (!source.is_watched || now - source.last < patience_) continue;
     source.is_watched = false;
-    spdlog::warn(
+    spdlog::warn(fmt::format(
         "{}: no progress in loading for {:.0f} s: a step takes long, or the source does not "
         "respond",
-        source.name, std::chrono::duration<double>(now - source.last).count());
+        source.name, std::chrono::duration<double>(now - source.last).count()));
   }
 }
 

@@ -1,5 +1,6 @@
 #include "server/data/named_tables.h"
 
+#include <fmt/format.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
@@ -59,11 +60,11 @@ std::shared_ptr<const NamedTables> read_named_tables(
     try {
       NamedTable named = read_table(config);
       const ValueTable& table = *named.table;
-      spdlog::info("{}: {} rows of {}, by {}{}", config.file, table.size(), table.names().value,
-                   table.names().key,
-                   named.languages.empty()
-                       ? ""
-                       : fmt::format(", in {} more languages", named.languages.size()));
+      spdlog::info(fmt::format(
+          "{}: {} rows of {}, by {}{}", config.file, table.size(), table.names().value,
+          table.names().key,
+          named.languages.empty() ? ""
+                                  : fmt::format(", in {} more languages", named.languages.size())));
       read.emplace(name, std::move(named));
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("values \"{}\": {}", name, error.what()));

@@ -21,8 +21,8 @@
 namespace trapeze {
 namespace {
 
-constexpr std::array<std::string_view, 1> kOwnParameters = {"bbox"};
-constexpr std::string_view kPattern = "/values/{layer}/{attribute}";
+constexpr std::array<std::string_view, 1> kValuesParameters = {"bbox"};
+constexpr std::string_view kValuesPattern = "/values/{layer}/{attribute}";
 
 /// Without any, all counts.
 using Boxes = std::vector<Box>;
@@ -187,7 +187,7 @@ Problem unknown_attribute(const std::string& name, const std::string& layer) {
 
 Result<Document> values_document(const DocumentRequest& request) {
   if (request.path.size() != 3) {
-    return Problem{404, fmt::format("There is nothing here. Values are at {}.", kPattern)};
+    return Problem{404, fmt::format("There is nothing here. Values are at {}.", kValuesPattern)};
   }
   const std::vector<std::string> names = {request.path[1]};
   const auto position = request.dataset.find(names.front());
@@ -199,7 +199,7 @@ Result<Document> values_document(const DocumentRequest& request) {
   if (field < 0) return unknown_attribute(request.path[2], names.front());
   const auto boxes = boxes_of(request);
   if (!boxes) return boxes.problem();
-  const auto style = request.style_for(names, kOwnParameters);
+  const auto style = request.style_for(names, kValuesParameters);
   if (!style) return style.problem();
   const auto counts = count_values(served, *position, field, *style, *boxes);
   if (!counts) return counts.problem();

@@ -25,8 +25,8 @@
 namespace trapeze {
 namespace {
 
-constexpr std::array<std::string_view, 1> kOwnParameters = {"z"};
-constexpr std::string_view kPattern = "/identify/{layers}/{lon},{lat}";
+constexpr std::array<std::string_view, 1> kIdentifyParameters = {"z"};
+constexpr std::string_view kIdentifyPattern = "/identify/{layers}/{lon},{lat}";
 
 constexpr std::array kInfoFormats = {
     InfoFormat{"application/geo+json", ".json", "application/geo+json", IdentifyFormat::json},
@@ -39,8 +39,8 @@ Result<Point> place_in(const std::string& text) {
   if (const auto place = parse_place(text)) return *place;
   const std::string takes = fmt::format(
       "longitude and latitude in degrees: -180 to 180, -{0:.5f} to {0:.5f}", kMaxLatitude);
-  return Problem{400, fmt::format("The path ends with {}: {}.", takes, kPattern), "lon,lat", text,
-                 takes};
+  return Problem{400, fmt::format("The path ends with {}: {}.", takes, kIdentifyPattern), "lon,lat",
+                 text, takes};
 }
 
 Result<std::optional<double>> parse_zoom(const DocumentRequest& request) {
@@ -53,7 +53,8 @@ Result<std::optional<double>> parse_zoom(const DocumentRequest& request) {
 
 Result<PlaceQuery> parse_request(const DocumentRequest& request) {
   if (request.path.size() != 3) {
-    return Problem{404, fmt::format("There is nothing here. Features are at {}.", kPattern)};
+    return Problem{404,
+                   fmt::format("There is nothing here. Features are at {}.", kIdentifyPattern)};
   }
   auto layers = parse_layer_list(request.path[1]);
   if (!layers) return std::move(layers).problem();
@@ -62,7 +63,7 @@ Result<PlaceQuery> parse_request(const DocumentRequest& request) {
   auto zoom = parse_zoom(request);
   if (!zoom) return std::move(zoom).problem();
   PlaceQuery parsed{*std::move(layers), *place, *zoom, {}};
-  auto style = request.style_for(parsed.layers, kOwnParameters);
+  auto style = request.style_for(parsed.layers, kIdentifyParameters);
   if (!style) return std::move(style).problem();
   parsed.style = *std::move(style);
   return parsed;
@@ -265,15 +266,15 @@ Result<Json> identify(const PlaceQuery& query, const Dataset& dataset) {
 
 constexpr std::string_view kNothing = "There is nothing here.";
 
-std::string words_of(const Json& value) {
+std::string value_words(const Json& value) {
   if (value.is_null()) return {};
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
 /// "Lac Léman", or "water 7" for a feature without a title.
 std::string heading_of(const Json& feature) {
-  if (feature.contains("title")) return words_of(feature["title"]);
-  return fmt::format("{} {}", words_of(feature["layer"]), words_of(feature["id"]));
+  if (feature.contains("title")) return value_words(feature["title"]);
+  return fmt::format("{} {}", value_words(feature["layer"]), value_words(feature["id"]));
 }
 
 std::string text_of(const Json& collection) {
@@ -281,9 +282,9 @@ std::string text_of(const Json& collection) {
   for (const Json& feature : collection["features"]) {
     if (!text.empty()) text += '\n';
     text += fmt::format("{}\n  layer = {}\n  id = {}\n", heading_of(feature),
-                        words_of(feature["layer"]), words_of(feature["id"]));
+                        value_words(feature["layer"]), value_words(feature["id"]));
     for (const auto& [name, value] : feature["properties"].items()) {
-      text += fmt::format("  {} = {}\n", name, words_of(value));
+      text += fmt::format("  {} = {}\n", name, value_words(value));
     }
   }
   return text.empty() ? fmt::format("{}\n", kNothing) : text;
@@ -291,7 +292,7 @@ std::string text_of(const Json& collection) {
 
 std::string table_row(std::string_view name, const Json& value) {
   return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", xml_escape(name),
-                     xml_escape(words_of(value)));
+                     xml_escape(value_words(value)));
 }
 
 std::string html_of(const Json& collection) {

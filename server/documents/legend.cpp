@@ -23,8 +23,9 @@
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kPattern = "/legend/{layers}.json or /legend/{layers}[@{1-4}x].png";
-constexpr std::string_view kJson = ".json";
+constexpr std::string_view kLegendPattern =
+    "/legend/{layers}.json or /legend/{layers}[@{1-4}x].png";
+constexpr std::string_view kJsonEnding = ".json";
 
 struct LegendEntry {
   std::string label;
@@ -238,7 +239,7 @@ std::string legend_json(const std::vector<LayerLegend>& legend) {
 }
 
 // In pixels at scale 1.
-constexpr int kMargin = 6;
+constexpr int kLegendMargin = 6;
 constexpr int kRowHeight = 16;
 constexpr int kLayerGap = 8;  // above and below a layer with several classes
 constexpr int kSwatchWidth = 20;
@@ -246,12 +247,12 @@ constexpr int kSwatchHeight = 12;
 constexpr int kSwatchGap = 6;
 constexpr double kMaxSwatchStroke = 4;
 constexpr int kMaxLabelWidth = 320;
-constexpr int kTextSize = 12;
+constexpr int kLegendTextSize = 12;
 constexpr int kBaseLine =
     12;  // from the top of its row to the base line, so that capitals are centred
 constexpr int kMaxHeight = 8192;  // a short request may have many layers with many classes
 constexpr Rgba kPaper{255, 255, 255, 255};
-constexpr Rgba kInk{0x22, 0x22, 0x22, 255};
+constexpr Rgba kLegendInk{0x22, 0x22, 0x22, 255};
 constexpr Rgba kFrame{0x88, 0x88, 0x88, 255};
 
 /// A line of the picture: a title, or a swatch with its label.
@@ -264,7 +265,7 @@ struct LegendRow {
 
 std::vector<LegendRow> rows_of(const std::vector<LayerLegend>& legend) {
   std::vector<LegendRow> rows;
-  int top = kMargin;
+  int top = kLegendMargin;
   const auto add = [&](const LayerLegend& layer, const std::string& label,
                        const LegendEntry* entry) {
     rows.push_back({label, entry, &layer, top});
@@ -284,7 +285,7 @@ std::vector<LegendRow> rows_of(const std::vector<LayerLegend>& legend) {
 }
 
 int left_of_label(const LegendRow& row) {
-  return row.entry == nullptr ? kMargin : kMargin + kSwatchWidth + kSwatchGap;
+  return row.entry == nullptr ? kLegendMargin : kLegendMargin + kSwatchWidth + kSwatchGap;
 }
 
 /// A polygon drawn as in the map: in a picture of its own, on paper.
@@ -393,7 +394,7 @@ void copy_into(const Picture& part, int left, int top, Picture& picture) {
 
 /// In pixels at scale 1.
 int height_of(const std::vector<LegendRow>& rows) {
-  return (rows.empty() ? kMargin : rows.back().top + kRowHeight) + kMargin;
+  return (rows.empty() ? kLegendMargin : rows.back().top + kRowHeight) + kLegendMargin;
 }
 
 /// The labels by row, cut to the available width.
@@ -401,7 +402,7 @@ std::vector<std::string> fitted_labels(const std::vector<LegendRow>& rows, const
   std::vector<std::string> labels;
   labels.reserve(rows.size());
   for (const LegendRow& row : rows) {
-    labels.push_back(fonts.fitted(row.label, kTextSize, kMaxLabelWidth));
+    labels.push_back(fonts.fitted(row.label, kLegendTextSize, kMaxLabelWidth));
   }
   return labels;
 }
@@ -410,8 +411,8 @@ LegendSize size_of(const std::vector<LegendRow>& rows, const std::vector<std::st
                    const Fonts& fonts) {
   int width = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const int label = fonts.width_of(labels[i], kTextSize);
-    width = std::max(width, left_of_label(rows[i]) + label + kMargin);
+    const int label = fonts.width_of(labels[i], kLegendTextSize);
+    width = std::max(width, left_of_label(rows[i]) + label + kLegendMargin);
   }
   return {width, height_of(rows)};
 }
@@ -432,17 +433,17 @@ Picture draw_legend(const std::vector<LegendRow>& rows, const Fonts& fonts, int 
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const LegendRow& row = rows[i];
     if (row.entry != nullptr) {
-      copy_into(swatch.draw(row.entry->paint, *row.layer), kMargin * scale,
+      copy_into(swatch.draw(row.entry->paint, *row.layer), kLegendMargin * scale,
                 (row.top + (kRowHeight - kSwatchHeight) / 2) * scale, picture);
     }
     fonts.draw(labels[i], left_of_label(row) * scale, (row.top + kBaseLine) * scale,
-               {kTextSize * scale, kInk}, picture);
+               {kLegendTextSize * scale, kLegendInk}, picture);
   }
   return picture;
 }
 
 Result<Document> legend_as_json(std::string_view file, const DocumentRequest& request) {
-  file.remove_suffix(kJson.size());
+  file.remove_suffix(kJsonEnding.size());
   const auto layers = parse_layer_list(file);
   if (!layers) return layers.problem();
   const auto legend = legend_of(*layers, request);
@@ -485,10 +486,10 @@ Result<LegendSize> legend_size(const std::string& layer, const DocumentRequest& 
 Result<Document> legend_document(const DocumentRequest& request) {
   if (request.path.size() == 2) {
     const std::string& file = request.path[1];
-    if (file.ends_with(kJson)) return legend_as_json(file, request);
+    if (file.ends_with(kJsonEnding)) return legend_as_json(file, request);
     if (file.ends_with(".png")) return legend_as_png(file, request);
   }
-  return Problem{404, fmt::format("There is nothing here. Legends are at {}.", kPattern)};
+  return Problem{404, fmt::format("There is nothing here. Legends are at {}.", kLegendPattern)};
 }
 
 }  // namespace trapeze

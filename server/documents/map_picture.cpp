@@ -16,8 +16,8 @@
 namespace trapeze {
 namespace {
 
-constexpr std::array<std::string_view, 4> kOwnParameters = {"bbox", "crs", "height", "width"};
-constexpr std::string_view kPattern =
+constexpr std::array<std::string_view, 4> kPictureParameters = {"bbox", "crs", "height", "width"};
+constexpr std::string_view kPicturePattern =
     "/map/{layers}.png?bbox=W,S,E,N or /map/{layers}/{lon},{lat},{zoom}/{width}x{height}.png";
 constexpr int kUsualSide = 1024;  // the longer side, in pixels at scale 1
 
@@ -73,11 +73,6 @@ std::optional<PictureSize> parse_size(std::string_view text) {
   const auto height = parse_pixels(text.substr(std::min(x + 1, text.size())));
   if (!width || !height) return std::nullopt;
   return PictureSize{*width, *height};
-}
-
-Problem bad_value(std::string_view parameter, const std::string& value, std::string takes) {
-  return {400, fmt::format("The parameter {} takes {}.", parameter, takes), std::string(parameter),
-          value, takes};
 }
 
 Problem bad_window(const std::string& value) {
@@ -142,7 +137,7 @@ Result<PictureSize> size_of(const WindowSides& sides, const DocumentRequest& req
 
 /// Parses everything in a request except its style.
 Result<WindowRequest> parse_with_box(const DocumentRequest& request) {
-  const auto name = parse_picture_name(request.path[1], kPattern);
+  const auto name = parse_picture_name(request.path[1], kPicturePattern);
   if (!name) return name.problem();
   auto layers = parse_layer_list(name->stem);
   if (!layers) return std::move(layers).problem();
@@ -161,18 +156,18 @@ Problem not_around_a_place(std::string_view parameter, const std::string& value)
   return {400,
           fmt::format("The parameter {} goes with a box, {}: a picture around a place is in Web "
                       "Mercator, and its address has its size.",
-                      parameter, kPattern.substr(0, kPattern.find(' '))),
+                      parameter, kPicturePattern.substr(0, kPicturePattern.find(' '))),
           std::string(parameter), value, "/map/{layers}.png?bbox=W,S,E,N"};
 }
 
 Result<WindowRequest> parse_with_centre(const DocumentRequest& request) {
   auto layers = parse_layer_list(request.path[1]);
   if (!layers) return std::move(layers).problem();
-  for (const std::string_view name : kOwnParameters) {
+  for (const std::string_view name : kPictureParameters) {
     if (const std::string* value = request.find(name)) return not_around_a_place(name, *value);
   }
   const auto centre = parse_centre(request.path[2]);
-  const auto name = parse_picture_name(request.path[3], kPattern);
+  const auto name = parse_picture_name(request.path[3], kPicturePattern);
   if (!name) return name.problem();
   const auto size = parse_size(name->stem);
   if (!centre || !size) {
@@ -183,7 +178,8 @@ Result<WindowRequest> parse_with_centre(const DocumentRequest& request) {
                      "longitude from -360 to 360, latitude from -{0:.4f} to {0:.4f} and "
                      "zoom from 0 to {1}, such as 14.5,35.9,11",
                      kMaxLatitude, kMaxZoom);
-    return Problem{400, fmt::format("The address of a picture takes {}: {}.", takes, kPattern),
+    return Problem{400,
+                   fmt::format("The address of a picture takes {}: {}.", takes, kPicturePattern),
                    centre ? "width x height" : "lon,lat,zoom", request.path[centre ? 3 : 2], takes};
   }
   const int width = size->width * name->scale;
@@ -201,7 +197,7 @@ bool has_style(const std::vector<std::string>& path) {
 Result<WindowRequest> parse_unstyled(const DocumentRequest& request) {
   if (request.path.size() == 2) return parse_with_box(request);
   if (request.path.size() == 4) return parse_with_centre(request);
-  return Problem{404, fmt::format("There is nothing here. Pictures are at {}.", kPattern)};
+  return Problem{404, fmt::format("There is nothing here. Pictures are at {}.", kPicturePattern)};
 }
 
 }  // namespace
@@ -263,10 +259,15 @@ Result<WindowRequest> parse_map_picture(const DocumentRequest& request) {
   if (!parsed) return parsed;
   auto styled = request.styles.read(std::move(unstyled.query), is_styled ? 404 : 400);
   if (!styled) return std::move(styled).problem();
-  auto style = styled->style_for(parsed->layers, kOwnParameters);
+  auto style = styled->style_for(parsed->layers, kPictureParameters);
   if (!style) return std::move(style).problem();
   parsed->style = *std::move(style);
   return parsed;
+}
+
+Problem bad_value(std::string_view parameter, const std::string& value, const std::string& takes) {
+  return {400, fmt::format("The parameter {} takes {}.", parameter, takes), std::string(parameter),
+          value, takes};
 }
 
 }  // namespace trapeze

@@ -8,8 +8,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
+#include "server/base/problem.h"
 #include "server/base/result.h"
 #include "server/documents/document.h"
 #include "server/tiles/map_system.h"
@@ -47,5 +49,8 @@ std::optional<WindowSides> parse_window_around(const MapSystem& system, std::str
 
 /// A length in pixels of a picture, from 1 to kMaxPicturePixels.
 std::optional<int> parse_pixels(std::string_view text);
+
+/// The problem of a parameter whose value is not one of those that it takes.
+Problem bad_value(std::string_view parameter, const std::string& value, const std::string& takes);
 
 }  // namespace trapeze

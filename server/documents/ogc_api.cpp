@@ -20,7 +20,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::array<std::string_view, 2> kOwnParameters = {"collections", "f"};
+constexpr std::array<std::string_view, 2> kOgcApiParameters = {"collections", "f"};
 constexpr std::string_view kJsonType = "application/json";
 constexpr std::string_view kPngType = "image/png";
 constexpr std::string_view kMapRelation = "http://www.opengis.net/def/rel/ogc/1.0/map";
@@ -59,7 +59,7 @@ Json link(std::string_view relation, std::string_view type, std::string_view tit
   return {{"rel", relation}, {"type", type}, {"title", title}, {"href", href}};
 }
 
-Problem nothing_here() {
+Problem nothing_below_ogc() {
   return {404, "There is nothing here. The beginning is /ogc."};
 }
 
@@ -107,7 +107,7 @@ Result<TiledResource> tiled_dataset(const DocumentRequest& request) {
 
 /// The query that links need after their path to keep the resource and its style.
 Result<std::string> query_of(const TiledResource& resource, const DocumentRequest& request) {
-  const auto style = request.style_link_for(resource.layers, kOwnParameters);
+  const auto style = request.style_link_for(resource.layers, kOgcApiParameters);
   if (!style) return style.problem();
   const std::string text = style->query();
   std::string query = resource.selection;
@@ -421,7 +421,7 @@ Result<Json> find_json(const Route& route, const DocumentRequest& request) {
     case RouteId::matrix_set:
       return matrix_set_of(path[1], request);
     default:
-      return nothing_here();
+      return nothing_below_ogc();
   }
 }
 
@@ -442,7 +442,7 @@ Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentReq
   const auto tile = parse_tile_id(numbers[1], numbers[3], numbers[2], *set);
   if (!tile) return tile.problem();
   TileRequest parsed{std::move(resource->layers), *tile, 1, {}, TileFormat::png, set};
-  auto style = request.style_for(parsed.layers, kOwnParameters);
+  auto style = request.style_for(parsed.layers, kOgcApiParameters);
   if (!style) return std::move(style).problem();
   parsed.style = *std::move(style);
   return parsed;
@@ -453,7 +453,7 @@ Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentReq
 Result<Document> ogc_document(const DocumentRequest& request) {
   if (auto problem = check_format(request, "json")) return std::move(*problem);
   const Route* route = route_of(request);
-  if (route == nullptr) return nothing_here();
+  if (route == nullptr) return nothing_below_ogc();
   if (route->id == RouteId::api) {
     return Document{std::string(kOpenApiType), openapi_json(request)};
   }

@@ -18,13 +18,8 @@
 namespace trapeze {
 namespace {
 
-constexpr std::array<std::string_view, 9> kOwnParameters = {
+constexpr std::array<std::string_view, 9> kOgcMapParameters = {
     "bbox", "bbox-crs", "bgcolor", "collections", "crs", "f", "height", "transparent", "width"};
-
-Problem bad_value(std::string_view parameter, const std::string& value, const std::string& takes) {
-  return {400, fmt::format("The parameter {} takes {}.", parameter, takes), std::string(parameter),
-          value, takes};
-}
 
 /// The system that a parameter names, or the default.
 Result<MapSystemPtr> system_of(const DocumentRequest& request, std::string_view parameter,
@@ -144,7 +139,7 @@ Result<WindowRequest> parse_ogc_map(const std::vector<std::string>& layers,
   if (request.find("background") == nullptr) {
     styled.query.insert(styled.query.end(), background->begin(), background->end());
   }
-  auto style = styled.style_for(layers, kOwnParameters);
+  auto style = styled.style_for(layers, kOgcMapParameters);
   if (!style) return std::move(style).problem();
   return WindowRequest{layers, *view, 1, *std::move(style), *format, "map", *system};
 }

@@ -20,7 +20,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kHead130 =
+constexpr std::string_view kCapabilitiesHead130 =
     R"(<?xml version="1.0" encoding="UTF-8"?>
 <WMS_Capabilities version="1.3.0" xmlns="http://www.opengis.net/wms"
  xmlns:sld="http://www.opengis.net/sld" xmlns:xlink="http://www.w3.org/1999/xlink"
@@ -28,13 +28,11 @@ constexpr std::string_view kHead130 =
  xsi:schemaLocation="http://www.opengis.net/wms http://schemas.opengis.net/wms/1.3.0/capabilities_1_3_0.xsd http://www.opengis.net/sld http://schemas.opengis.net/sld/1.1.0/sld_capabilities.xsd">
 )";
 
-constexpr std::string_view kHead111 =
+constexpr std::string_view kCapabilitiesHead111 =
     R"(<?xml version="1.0" encoding="UTF-8"?>
 <!DOCTYPE WMT_MS_Capabilities SYSTEM "http://schemas.opengis.net/wms/1.1.1/WMS_MS_Capabilities.dtd">
 <WMT_MS_Capabilities version="1.1.1">
 )";
-
-constexpr double kMetresPerPixel = 0.00028;  // pixel size assumed by the OGC
 
 double scale_denominator_of(int zoom) {
   return web_mercator_quad()->matrices[static_cast<std::size_t>(zoom)].scale_denominator;
@@ -47,7 +45,7 @@ class CapabilitiesWriter {
       : is_new_(asked.version == WmsVersion::v1_3_0), query_(asked.query), request_(request) {}
 
   std::string write() {
-    xml_ = is_new_ ? kHead130 : kHead111;
+    xml_ = is_new_ ? kCapabilitiesHead130 : kCapabilitiesHead111;
     add_service();
     xml_ += "  <Capability>\n";
     add_requests();

@@ -16,29 +16,29 @@
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kHead130 =
+constexpr std::string_view kExceptionHead130 =
     R"(<?xml version="1.0" encoding="UTF-8"?>
 <ServiceExceptionReport version="1.3.0" xmlns="http://www.opengis.net/ogc"
  xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
  xsi:schemaLocation="http://www.opengis.net/ogc http://schemas.opengis.net/wms/1.3.0/exceptions_1_3_0.xsd">
 )";
 
-constexpr std::string_view kHead111 =
+constexpr std::string_view kExceptionHead111 =
     R"(<?xml version="1.0" encoding="UTF-8"?>
 <!DOCTYPE ServiceExceptionReport SYSTEM "http://schemas.opengis.net/wms/1.1.1/exception_1_1_1.dtd">
 <ServiceExceptionReport version="1.1.1">
 )";
 
-constexpr int kTextSize = 14;
+constexpr int kExceptionTextSize = 14;
 constexpr int kLineHeight = 18;
-constexpr int kMargin = 6;
-constexpr Rgba kInk{0xb0, 0x10, 0x10, 255};
+constexpr int kExceptionMargin = 6;
+constexpr Rgba kExceptionInk{0xb0, 0x10, 0x10, 255};
 
 Document report(const Problem& problem, WmsVersion version) {
   const bool is_new = version == WmsVersion::v1_3_0;
   const std::string_view code = code_of(problem);
   const bool has_locator = code != ows::kNoApplicableCode && !problem.parameter.empty();
-  std::string xml(is_new ? kHead130 : kHead111);
+  std::string xml(is_new ? kExceptionHead130 : kExceptionHead111);
   xml += "  <ServiceException";
   if (code != ows::kNoApplicableCode) xml += fmt::format(" code=\"{}\"", code);
   if (is_new && has_locator) {
@@ -51,11 +51,11 @@ Document report(const Problem& problem, WmsVersion version) {
 
 /// Draws words from the north-west corner on, as many as there is room for.
 void write(std::string_view words, const Fonts& fonts, Picture& picture) {
-  const int width = picture.width - 2 * kMargin;
+  const int width = picture.width - 2 * kExceptionMargin;
   std::string line;
-  int base = kMargin + kTextSize;
+  int base = kExceptionMargin + kExceptionTextSize;
   const auto end_line = [&] {
-    fonts.draw(line, kMargin, base, {kTextSize, kInk}, picture);
+    fonts.draw(line, kExceptionMargin, base, {kExceptionTextSize, kExceptionInk}, picture);
     line.clear();
     base += kLineHeight;
   };
@@ -63,7 +63,7 @@ void write(std::string_view words, const Fonts& fonts, Picture& picture) {
     const std::string_view word = words.substr(0, words.find(' '));
     words.remove_prefix(std::min(word.size() + 1, words.size()));
     std::string longer = line.empty() ? std::string(word) : fmt::format("{} {}", line, word);
-    if (!line.empty() && fonts.width_of(longer, kTextSize) > width) {
+    if (!line.empty() && fonts.width_of(longer, kExceptionTextSize) > width) {
       end_line();
       longer = word;
     }

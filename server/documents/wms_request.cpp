@@ -22,7 +22,7 @@ namespace {
 
 // As spelled in the standard, with those by which clients report the resolution of their screen.
 // All other keys in a query are style parameters, or are ignored.
-constexpr std::array<std::string_view, 34> kKeys = {
+constexpr std::array<std::string_view, 34> kWmsKeys = {
     "SERVICE",
     "REQUEST",
     "VERSION",
@@ -59,7 +59,7 @@ constexpr std::array<std::string_view, 34> kKeys = {
     "SLD_VERSION",
 };
 
-constexpr std::string_view kOperations =
+constexpr std::string_view kWmsOperations =
     "GetCapabilities, GetMap, GetFeatureInfo or GetLegendGraphic";
 constexpr double kLeastDpi = 24;
 constexpr double kMostDpi = 1200;
@@ -85,7 +85,7 @@ WmsVersion version_of(const KeyValuePairs& pairs) {
   return *version < name_of(WmsVersion::v1_3_0) ? WmsVersion::v1_1_1 : WmsVersion::v1_3_0;
 }
 
-Result<WmsRequest> capabilities_of(const KeyValuePairs& pairs) {
+Result<WmsRequest> wms_capabilities_of(const KeyValuePairs& pairs) {
   if (auto problem = check(pairs, "SERVICE", "WMS")) return std::move(*problem);
   WmsCapabilitiesRequest request{version_of(pairs)};
   for (const auto& [name, value] : pairs.others) {
@@ -397,10 +397,10 @@ Result<WmsRequest> legend_of(const KeyValuePairs& pairs, const DocumentRequest& 
 }
 
 Result<WmsRequest> parse_pairs(const KeyValuePairs& pairs, const DocumentRequest& request) {
-  if (!pairs.has("REQUEST")) return missing("REQUEST", kOperations);
+  if (!pairs.has("REQUEST")) return missing("REQUEST", kWmsOperations);
   const std::string& operation = *pairs["REQUEST"];
   if (is_equal(operation, "GetCapabilities") || is_equal(operation, "capabilities")) {
-    return capabilities_of(pairs);
+    return wms_capabilities_of(pairs);
   }
   if (pairs.has("SERVICE")) {
     if (auto problem = check(pairs, "SERVICE", "WMS")) return std::move(*problem);
@@ -409,7 +409,7 @@ Result<WmsRequest> parse_pairs(const KeyValuePairs& pairs, const DocumentRequest
   if (is_equal(operation, "GetFeatureInfo")) return info_of(pairs, request);
   if (is_equal(operation, "GetLegendGraphic")) return legend_of(pairs, request);
   return ows_problem(501, ows::kOperationNotSupported, "REQUEST",
-                     fmt::format("REQUEST takes {}.", kOperations), operation);
+                     fmt::format("REQUEST takes {}.", kWmsOperations), operation);
 }
 
 WmsExceptions parse_exceptions(const std::optional<std::string>& text) {
@@ -430,14 +430,14 @@ Result<WmsRequest> parse_wms_request(const DocumentRequest& request) {
   if (request.path.size() != 1) {
     return Problem{404, "There is nothing here. WMS is at /wms, by key-value pairs."};
   }
-  const auto pairs = divide(request.query, kKeys);
+  const auto pairs = divide(request.query, kWmsKeys);
   if (!pairs) return pairs.problem();
   return parse_pairs(*pairs, request);
 }
 
 WmsExceptionRequest parse_wms_exceptions(std::span<const QueryPair> query) {
   WmsExceptionRequest request;
-  const auto divided = divide(query, kKeys);
+  const auto divided = divide(query, kWmsKeys);
   if (!divided) return request;
   const KeyValuePairs& pairs = *divided;
   request.version = version_of(pairs);

@@ -38,8 +38,8 @@ constexpr std::string_view kIdentification =
 )";
 
 constexpr std::string_view kGetCapabilities = "GetCapabilities";
-constexpr std::array<std::string_view, 3> kOperations = {kGetCapabilities, "GetTile",
-                                                         "GetFeatureInfo"};
+constexpr std::array<std::string_view, 3> kOperationNames = {kGetCapabilities, "GetTile",
+                                                             "GetFeatureInfo"};
 // For GetCapabilities.
 constexpr std::string_view kFormats =
     R"(      <ows:Parameter name="AcceptFormats">
@@ -193,7 +193,7 @@ std::string capabilities_xml(const WmtsCapabilitiesRequest& sections,
   if (sections.identification) xml += kIdentification;
   if (sections.operations) {
     xml += "  <ows:OperationsMetadata>\n";
-    for (const std::string_view operation : kOperations) {
+    for (const std::string_view operation : kOperationNames) {
       xml += operation_xml(operation, request.base_url);
     }
     xml += "  </ows:OperationsMetadata>\n";

@@ -23,16 +23,16 @@ namespace trapeze {
 namespace {
 
 // As spelled in the standard. All other keys in a query are style parameters, or are ignored.
-constexpr std::array<std::string_view, 15> kKeys = {
+constexpr std::array<std::string_view, 15> kWmtsKeys = {
     "Service", "Request", "Version",       "AcceptVersions", "Sections", "Layer",
     "Style",   "Format",  "TileMatrixSet", "TileMatrix",     "TileRow",  "TileCol",
     "I",       "J",       "InfoFormat",
 };
-constexpr std::string_view kOperations = "GetCapabilities, GetTile or GetFeatureInfo";
+constexpr std::string_view kWmtsOperations = "GetCapabilities, GetTile or GetFeatureInfo";
 constexpr std::string_view kSections =
     "some of ServiceIdentification, ServiceProvider, OperationsMetadata, Contents, Themes, or All";
 
-Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
+Result<WmtsRequest> wmts_capabilities_of(const KeyValuePairs& pairs) {
   if (const auto& versions = pairs["AcceptVersions"]; versions && !versions->empty()) {
     const auto accepted = split_list(*versions);
     if (std::ranges::find(accepted, kWmtsVersion) == accepted.end()) {
@@ -274,25 +274,25 @@ Result<WmtsRequest> key_value_info(const KeyValuePairs& pairs, const DocumentReq
 }
 
 Result<WmtsRequest> parse_key_values(const DocumentRequest& request) {
-  const auto divided = divide(request.query, kKeys);
+  const auto divided = divide(request.query, kWmtsKeys);
   if (!divided) return divided.problem();
   const KeyValuePairs& pairs = *divided;
   if (auto problem = check(pairs, "Service", "WMTS")) return std::move(*problem);
   const auto& operation = pairs["Request"];
   if (!operation || operation->empty()) {
-    return missing("Request", kOperations);
+    return missing("Request", kWmtsOperations);
   }
-  if (is_equal(*operation, "GetCapabilities")) return capabilities_of(pairs);
+  if (is_equal(*operation, "GetCapabilities")) return wmts_capabilities_of(pairs);
   if (is_equal(*operation, "GetFeatureInfo")) return key_value_info(pairs, request);
   if (is_equal(*operation, "GetTile")) {
     const auto parts = parts_of(pairs);
     if (!parts) return parts.problem();
     return as_request(tile_of(*parts, request));
   }
-  return invalid("Request", kOperations, *operation);
+  return invalid("Request", kWmtsOperations, *operation);
 }
 
-Problem nothing_here() {
+Problem nothing_below_wmts() {
   return {404, "There is nothing here. The capabilities are at /wmts.xml."};
 }
 
@@ -304,7 +304,7 @@ TileParts parts_of_path(const DocumentRequest& request) {
 Result<WmtsRequest> parse_tile_path(const DocumentRequest& request) {
   constexpr std::string_view kEnding = ".png";
   TileParts parts = parts_of_path(request);
-  if (!parts.column.ends_with(kEnding)) return nothing_here();
+  if (!parts.column.ends_with(kEnding)) return nothing_below_wmts();
   parts.column.resize(parts.column.size() - kEnding.size());
   return as_request(tile_of(parts, request));
 }
@@ -316,7 +316,7 @@ Result<WmtsRequest> parse_info_path(const DocumentRequest& request) {
   const auto format = std::ranges::find_if(info_formats(), [ending](const InfoFormat& known) {
     return !ending.empty() && known.ending == ending;
   });
-  if (format == info_formats().end()) return nothing_here();
+  if (format == info_formats().end()) return nothing_below_wmts();
   return info_of(parts_of_path(request), file.substr(0, end), request.path[7], *format, request);
 }
 
@@ -344,13 +344,13 @@ Result<WmtsRequest> parse_wmts_request(const DocumentRequest& request) {
     if (path[0] == "wmts") return parse_key_values(request);
     return WmtsRequest(WmtsCapabilitiesRequest{});
   }
-  if (path[0] != "wmts") return nothing_here();
+  if (path[0] != "wmts") return nothing_below_wmts();
   if (path.size() == 3 && path[1] == kWmtsVersion && path[2] == "WMTSCapabilities.xml") {
     return WmtsRequest(WmtsCapabilitiesRequest{});
   }
   if (path.size() == 7) return parse_tile_path(request);
   if (path.size() == 9) return parse_info_path(request);
-  return nothing_here();
+  return nothing_below_wmts();
 }
 
 bool is_wmts_key_value_path(std::string_view path) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "server/base/trimmed.h"
+
 namespace trapeze {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr std::size_t kLimitedIpv6Bytes = 8;  // a /64
 bool is_trusted(const ClientAddress& address, std::span<const AddressRange> trusted) {
   return std::ranges::any_of(
       trusted, [&address](const AddressRange& range) { return range.contains(address); });
-}
-
-std::string_view trim(std::string_view text) {
-  while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
-  while (text.ends_with(' ') || text.ends_with('\t')) text.remove_suffix(1);
-  return text;
 }
 
 std::optional<int> parse_bits(std::string_view text, int most) {
@@ -84,7 +80,7 @@ ClientAddress client_behind(const ClientAddress& peer, std::string_view forwarde
   while (!forwarded_for.empty() && is_trusted(client, trusted)) {
     const std::size_t comma = forwarded_for.rfind(',');
     const bool is_last = comma == std::string_view::npos;
-    const auto said = parse_address(trim(forwarded_for.substr(is_last ? 0 : comma + 1)));
+    const auto said = parse_address(trimmed(forwarded_for.substr(is_last ? 0 : comma + 1)));
     if (!said) break;
     client = *said;
     forwarded_for = is_last ? std::string_view() : forwarded_for.substr(0, comma);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "server/base/gzip.h"
+#include "server/base/trimmed.h"
 
 #ifdef TRAPEZE_HAS_BROTLI
 #include <brotli/encode.h>
@@ -22,15 +23,9 @@ constexpr std::array kMade = {ContentEncoding::brotli, ContentEncoding::gzip};
 constexpr std::array kMade = {ContentEncoding::gzip};
 #endif
 
-std::string_view trim(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
-  const std::size_t end = text.find_last_not_of(" \t") + 1;
-  return begin < end ? text.substr(begin, end - begin) : std::string_view();
-}
-
 std::string_view take_until(char separator, std::string_view& text) {
   const std::size_t end = std::min(text.find(separator), text.size());
-  const std::string_view taken = trim(text.substr(0, end));
+  const std::string_view taken = trimmed(text.substr(0, end));
   text.remove_prefix(std::min(end + 1, text.size()));
   return taken;
 }

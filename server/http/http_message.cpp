@@ -4,16 +4,12 @@
 #include <cmath>
 #include <string>
 
+#include "server/base/trimmed.h"
+
 namespace trapeze {
 namespace {
 
 constexpr double kLongestRetrySeconds = 3600;
-
-std::string_view trim(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
-  const std::size_t end = text.find_last_not_of(" \t") + 1;
-  return begin < end ? text.substr(begin, end - begin) : std::string_view();
-}
 
 }  // namespace
 
@@ -36,11 +32,11 @@ HttpResponse problem_response(const Problem& problem, std::chrono::duration<doub
 }
 
 bool matches_entity_tag(std::string_view if_none_match, std::string_view entity_tag) {
-  if (trim(if_none_match) == "*") return true;
+  if (trimmed(if_none_match) == "*") return true;
   // Our own tags contain no comma, so splitting at commas can only break other tags.
   while (!if_none_match.empty()) {
     const std::size_t comma = std::min(if_none_match.find(','), if_none_match.size());
-    std::string_view tag = trim(if_none_match.substr(0, comma));
+    std::string_view tag = trimmed(if_none_match.substr(0, comma));
     if (tag.starts_with("W/")) tag.remove_prefix(2);
     if (tag == entity_tag) return true;
     if_none_match.remove_prefix(std::min(comma + 1, if_none_match.size()));

@@ -1,5 +1,6 @@
 #include "server/http/http_server.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <sys/socket.h>
@@ -523,7 +524,7 @@ void HttpServer::Connection::handle(std::string body) {
                     });
     });
   } catch (const std::exception& error) {
-    spdlog::error("{} {}: {}", request_.method, request_.target, error.what());
+    spdlog::error(fmt::format("{} {}: {}", request_.method, request_.target, error.what()));
     send(problem_response({500, "The request could not be answered."}));
     return;
   }
@@ -711,7 +712,7 @@ void HttpServer::State::warn_of_refusal(const ErrorCode& error) {
   const auto now = Clock::now();
   if (now < next_warning_) return;
   next_warning_ = now + kWarningPause;
-  spdlog::warn("cannot accept a connection: {}", error.message());
+  spdlog::warn(fmt::format("cannot accept a connection: {}", error.message()));
 }
 
 void HttpServer::State::begin_rounds() {
@@ -867,8 +868,8 @@ void HttpServer::State::stop_on_signals() {
 void HttpServer::State::wait_for_signal() {
   signals_.async_wait([this](const ErrorCode& error, int signal) {
     if (error) return;
-    spdlog::info("{}: {}", signal == SIGINT ? "SIGINT" : "SIGTERM",
-                 is_draining_ ? "stopping at once" : "finishing requests in progress");
+    spdlog::info(fmt::format("{}: {}", signal == SIGINT ? "SIGINT" : "SIGTERM",
+                             is_draining_ ? "stopping at once" : "finishing requests in progress"));
     stop();
     wait_for_signal();
   });

@@ -1,5 +1,6 @@
 #include "server/http/static_files.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -135,8 +136,8 @@ StaticFiles::StaticFiles(const std::string& root) {
       }
       if (!entry->is_regular_file()) continue;
       if (entry->file_size() > kMaxFileBytes) {
-        spdlog::warn("{} is larger than {} MB and is not served", entry->path().string(),
-                     kMaxFileBytes >> 20);
+        spdlog::warn(fmt::format("{} is larger than {} MB and is not served",
+                                 entry->path().string(), kMaxFileBytes >> 20));
         continue;
       }
       const std::string path = entry->path().lexically_relative(root).generic_string();

@@ -19,13 +19,13 @@ inline constexpr NameTable<BatchSystem, 2> kBatchSystemNames({
 });
 
 /// Within the default limits of Kubernetes Jobs and Slurm job arrays.
-constexpr int kMostParts = 1000;
+constexpr int kMostBatchParts = 1000;
 
 /// What to seed, as given to `trapeze seed`.
 struct BatchSeeding {
   std::vector<std::string> arguments;  // except --output, --part, --sparse and job options
   std::string output;                  // the archive; on Kubernetes, its name on the volume
-  int parts = 1;                       // 1 to kMostParts
+  int parts = 1;                       // 1 to kMostBatchParts
   bool is_sparse = false;              // --sparse, which applies to joining
 };
 

@@ -13,7 +13,6 @@
 namespace trapeze {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 127;
 constexpr std::size_t kPlaceOfMetadata = 24;  // in the header
 constexpr std::size_t kMostMetadata = std::size_t{64} << 20;
 
@@ -32,7 +31,7 @@ std::optional<std::string_view> part_of(std::string_view bytes, std::uint64_t of
 
 /// Empty if there are none; nothing if this is not an archive of ours.
 std::optional<std::string_view> stored_fingerprints(std::string_view bytes) {
-  if (bytes.size() < kHeaderBytes || !bytes.starts_with("PMTiles\x03")) return std::nullopt;
+  if (bytes.size() < kPmtilesHeaderBytes || !bytes.starts_with("PMTiles\x03")) return std::nullopt;
   const auto compressed = part_of(bytes, word_at(bytes, kPlaceOfMetadata),
                                   word_at(bytes, kPlaceOfMetadata + sizeof(std::uint64_t)));
   if (!compressed) return std::nullopt;

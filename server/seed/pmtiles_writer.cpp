@@ -15,8 +15,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint64_t kBeginOfTiles = 16'384;  // the first request of readers ends here
-constexpr std::uint64_t kHeaderBytes = 127;
-constexpr std::uint64_t kMostOfRoot = kBeginOfTiles - kHeaderBytes;
+constexpr std::uint64_t kMostOfRoot = kBeginOfTiles - kPmtilesHeaderBytes;
 constexpr std::size_t kLeastLeaf = 4096;  // entries
 constexpr std::size_t kBuffer = std::size_t{1} << 20;
 constexpr std::uint64_t kMostRun = std::numeric_limits<std::uint32_t>::max();
@@ -195,7 +194,7 @@ std::string PmtilesWriter::header(const Directories& directories, const Section&
   std::string bytes = "PMTiles";
   append_little_endian(kVersion, bytes);
   const Section tiles{kBeginOfTiles, end_of_data - kBeginOfTiles};
-  const Section root{kHeaderBytes, directories.root.size()};
+  const Section root{kPmtilesHeaderBytes, directories.root.size()};
   for (const Section& section : {root, metadata, directories.leaves, tiles}) {
     append_little_endian(section.offset, bytes);
     append_little_endian(section.length, bytes);

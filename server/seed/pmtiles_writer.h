@@ -19,6 +19,9 @@
 
 namespace trapeze {
 
+/// The size of the header, as specified.
+inline constexpr std::uint64_t kPmtilesHeaderBytes = 127;
+
 /// An entry of a directory: `run` tiles from `id` on have these bytes. If run is 0, the entry
 /// refers to a leaf directory.
 struct PmtilesEntry {

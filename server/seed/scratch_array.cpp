@@ -13,7 +13,7 @@
 namespace trapeze {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, int error) {
+[[noreturn]] void fail_to_write_beside(const std::string& path, int error) {
   throw std::runtime_error(
       fmt::format("cannot write beside {}: {}", path, std::generic_category().message(error)));
 }
@@ -24,7 +24,7 @@ ScratchFile::ScratchFile(const std::string& path, std::size_t bytes) {
   if (bytes == 0) return;
   std::string name = path + ".XXXXXX";
   const int file = mkostemp(name.data(), O_CLOEXEC);
-  if (file < 0) fail(path, errno);
+  if (file < 0) fail_to_write_beside(path, errno);
   unlink(name.c_str());
   int error = posix_fallocate(file, 0, static_cast<off_t>(bytes));
   void* memory = MAP_FAILED;
@@ -33,7 +33,7 @@ ScratchFile::ScratchFile(const std::string& path, std::size_t bytes) {
     error = errno;
   }
   close(file);
-  if (memory == MAP_FAILED) fail(path, error);
+  if (memory == MAP_FAILED) fail_to_write_beside(path, error);
   bytes_ = {static_cast<std::byte*>(memory), bytes};
 }
 

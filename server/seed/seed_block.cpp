@@ -11,8 +11,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::uint64_t kMark = 0x31636f6c62656573;  // "seebloc1"
-constexpr std::size_t kAlignment = 8;
+constexpr std::uint64_t kBlockMark = 0x31636f6c62656573;  // "seebloc1"
 
 template <typename T>
 void append(std::span<const T> items, std::vector<std::byte>& bytes) {
@@ -76,7 +75,7 @@ void SeedBlockBuilder::add_tiles(int zoom, const PlaceRange& places, std::uint64
 
 std::vector<std::byte> SeedBlockBuilder::bytes(std::uint64_t job) const {
   BlockHeader header;
-  header.mark = kMark;
+  header.mark = kBlockMark;
   header.job = job;
   header.figures = figures;
   header.contents = contents_.size();
@@ -92,7 +91,7 @@ std::vector<std::byte> SeedBlockBuilder::bytes(std::uint64_t job) const {
   }
   for (const auto& entries : entries_) append(std::span(entries), block);
   append(std::span(data_), block);
-  block.resize((block.size() + kAlignment - 1) / kAlignment * kAlignment);
+  block.resize((block.size() + kBlockAlignment - 1) / kBlockAlignment * kBlockAlignment);
   header.bytes = block.size();
   std::memcpy(block.data(), &header, sizeof header);
   header.checksum = checksum_of_block(block);
@@ -105,7 +104,7 @@ std::optional<SeedBlock> SeedBlock::read(std::span<const std::byte> bytes) {
   BlockHeader& header = block.header_;
   if (bytes.size() < sizeof header) return std::nullopt;
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.mark != kMark || header.bytes < sizeof header || header.bytes > bytes.size()) {
+  if (header.mark != kBlockMark || header.bytes < sizeof header || header.bytes > bytes.size()) {
     return std::nullopt;
   }
   bytes = bytes.first(header.bytes);

@@ -36,6 +36,9 @@ struct SeedFigures {
 /// The digest of a tile's bytes.
 Digest digest_of_bytes(std::string_view bytes);
 
+/// Blocks begin in a log at multiples of it, and their sizes are multiples of it.
+constexpr std::size_t kBlockAlignment = 8;
+
 // The parts of a block, in their stored layout.
 struct BlockContent {
   Digest digest;
@@ -53,7 +56,7 @@ struct BlockFingerprint {
 };
 struct BlockHeader {
   std::uint64_t mark = 0;
-  std::uint64_t bytes = 0;     // of the whole block including this header; a multiple of 8
+  std::uint64_t bytes = 0;     // of the whole block including this header and its padding
   std::uint64_t checksum = 0;  // of everything that follows
   std::uint64_t job = 0;
   SeedFigures figures;

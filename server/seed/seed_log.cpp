@@ -9,21 +9,19 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "server/base/json_text.h"
+
 namespace trapeze {
 namespace {
 
-using Json = nlohmann::ordered_json;
+constexpr std::string_view kLogMark = "trapeze seeding 1\n";
 
-constexpr std::string_view kMark = "trapeze seeding 1\n";
-constexpr std::size_t kAlignment = 8;
-
-[[noreturn]] void fail(const std::string& path, const std::string& why) {
+[[noreturn]] void refuse_log(const std::string& path, const std::string& why) {
   throw std::runtime_error(fmt::format("{}: {}", path, why));
 }
 
@@ -51,8 +49,9 @@ std::string text_of(const SeedLogHead& head) {
                      {"scale", archive.scale},
                      {"layers", archive.layers},
                      {"style", archive.style}};
-  std::string text = std::string(kMark) + json.dump();
-  const std::size_t size = (text.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
+  std::string text = std::string(kLogMark) + json.dump();
+  const std::size_t size =
+      (text.size() + 1 + kBlockAlignment - 1) / kBlockAlignment * kBlockAlignment;
   text.append(size - 1 - text.size(), ' ').push_back('\n');
   return text;
 }
@@ -65,10 +64,11 @@ struct ReadHead {
 /// Nothing if it is not a head, or not a complete one.
 std::optional<ReadHead> read_head(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (!text.starts_with(kMark)) return std::nullopt;
-  const std::size_t end = text.find('\n', kMark.size());
+  if (!text.starts_with(kLogMark)) return std::nullopt;
+  const std::size_t end = text.find('\n', kLogMark.size());
   if (end == std::string_view::npos) return std::nullopt;
-  const Json json = Json::parse(text.substr(kMark.size(), end - kMark.size()), nullptr, false);
+  const Json json =
+      Json::parse(text.substr(kLogMark.size(), end - kLogMark.size()), nullptr, false);
   if (!json.is_object()) return std::nullopt;
   try {
     SeedLogHead head;
@@ -112,7 +112,7 @@ SeedLog::SeedLog(const std::string& path, const SeedLogHead& head)
     : path_(path), file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
   if (file_ < 0) fail_to_write(path, errno);
   try {
-    if (flock(file_, LOCK_EX | LOCK_NB) != 0) fail(path, "another process is writing it");
+    if (flock(file_, LOCK_EX | LOCK_NB) != 0) refuse_log(path, "another process is writing it");
     const std::string text = text_of(head);
     struct stat status {};
     if (fstat(file_, &status) != 0) fail_to_write(path, errno);
@@ -125,9 +125,9 @@ SeedLog::SeedLog(const std::string& path, const SeedLogHead& head)
     const MappedFile mapped(path);
     const std::span<const std::byte> bytes = mapped.bytes();
     if (!std::ranges::equal(bytes.first(text.size()), std::as_bytes(std::span(text)))) {
-      fail(path,
-           "this is the state of a different seeding: data, options or program have changed. "
-           "Remove it to start again, or use another --output");
+      refuse_log(path,
+                 "this is the state of a different seeding: data, options or program have changed. "
+                 "Remove it to start again, or use another --output");
     }
     end_ = for_each_block(bytes, text.size(), [this](const SeedBlock& block) {
       if (done_.insert(block.job()).second) figures_.add(block.figures());
@@ -172,14 +172,14 @@ SeedLogs::SeedLogs(const std::vector<std::string>& paths) {
     files_.push_back(std::make_unique<MappedFile>(path));
     const std::span<const std::byte> bytes = files_.back()->bytes();
     const std::optional<ReadHead> read = read_head(bytes);
-    if (!read) fail(path, "this is not a part of a seeding");
+    if (!read) refuse_log(path, "this is not a part of a seeding");
     const SeedLogHead& head = read->head;
     if (!first) {
       first = head;
       found.resize(head.jobs);
     }
     if (head.identity != first->identity || head.jobs != first->jobs) {
-      fail(path, fmt::format("this is a part of another seeding than {}", paths.front()));
+      refuse_log(path, fmt::format("this is a part of another seeding than {}", paths.front()));
     }
     std::size_t jobs = 0;
     for_each_block(bytes, read->size, [&](const SeedBlock& block) {
@@ -188,15 +188,16 @@ SeedLogs::SeedLogs(const std::vector<std::string>& paths) {
       ++jobs;
     });
     if (jobs < head.range.end - head.range.first) {
-      fail(path,
-           fmt::format("part {} of {} has not been finished: {} of {} jobs are done",
-                       head.part.number, head.part.count, jobs, head.range.end - head.range.first));
+      refuse_log(path, fmt::format("part {} of {} has not been finished: {} of {} jobs are done",
+                                   head.part.number, head.part.count, jobs,
+                                   head.range.end - head.range.first));
     }
   }
   archive_ = first->archive;
   for (const std::optional<SeedBlock>& block : found) {
     if (!block) {
-      fail(paths.front(), fmt::format("of its {} parts, not all were given", first->part.count));
+      refuse_log(paths.front(),
+                 fmt::format("of its {} parts, not all were given", first->part.count));
     }
     blocks_.push_back(*block);
   }

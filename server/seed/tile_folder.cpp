@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const std::string& path, const std::string& why) {
+[[noreturn]] void fail_to_write_folder(const std::string& path, const std::string& why) {
   throw std::runtime_error(fmt::format("cannot write {}: {}", path, why));
 }
 
@@ -33,7 +33,7 @@ void write_file(const std::string& path, std::string_view bytes) {
   std::ofstream file(path, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
-  if (!file) fail(path, std::generic_category().message(errno));
+  if (!file) fail_to_write_folder(path, std::generic_category().message(errno));
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ TileFolder::TileFolder(const std::string& path, ArchiveDescription description,
       contents_(path_, size.contents) {
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_empty(path_, error)) {
-    fail(path_, "it exists and is not empty");
+    fail_to_write_folder(path_, "it exists and is not empty");
   }
 }
 
@@ -60,7 +60,7 @@ void TileFolder::make_folder_of(const TileId& tile) {
   std::error_code error;
   const fs::path folder = fs::path(path_of(tile)).parent_path();
   fs::create_directories(folder, error);
-  if (error) fail(path_, error.message());
+  if (error) fail_to_write_folder(path_, error.message());
   zoom_ = tile.z;
   column_ = tile.x;
 }
@@ -82,7 +82,7 @@ void TileFolder::add_file(const TileId& tile, std::string_view bytes,
     const std::string first = path_of(tile_at_place(zoom, content.place));
     if (link(first.c_str(), path.c_str()) == 0) return;
     if (errno != EMLINK && errno != EPERM && errno != EOPNOTSUPP) {
-      fail(path_, std::generic_category().message(errno));
+      fail_to_write_folder(path_, std::generic_category().message(errno));
     }
   }
   write_file(path, bytes);

@@ -1,5 +1,6 @@
 #include "server/service/access_log.h"
 
+#include <fmt/format.h>
 #include <spdlog/fmt/chrono.h>
 #include <spdlog/spdlog.h>
 
@@ -73,12 +74,13 @@ std::shared_ptr<const LineFile> open_file(const std::string& target) {
   }
 }
 
-void warn_of_lost_lines(std::uint64_t lines) {
-  spdlog::warn("request log: {} lines were lost because they could not be written in time", lines);
+void warn_of_lost_request_lines(std::uint64_t lines) {
+  spdlog::warn(fmt::format(
+      "request log: {} lines were lost because they could not be written in time", lines));
 }
 
 void tell_failure(const std::string& words) {
-  spdlog::error("request log: cannot write: {}", words);
+  spdlog::error(fmt::format("request log: cannot write: {}", words));
 }
 
 }  // namespace
@@ -91,8 +93,8 @@ std::string access_line(const Answered& answered, LogFormat format) {
 AccessLog::AccessLog(std::string target, LogFormat format)
     : target_(std::move(target)),
       format_(format),
-      writer_(std::make_unique<LineWriter>(open_file(target_),
-                                           LineWriter::Events{warn_of_lost_lines, tell_failure})) {}
+      writer_(std::make_unique<LineWriter>(
+          open_file(target_), LineWriter::Events{warn_of_lost_request_lines, tell_failure})) {}
 
 AccessLog::~AccessLog() = default;
 
@@ -104,7 +106,7 @@ void AccessLog::reopen() {
   try {
     writer_->redirect(open_file(target_));
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
+    spdlog::error(error.what());
   }
 }
 

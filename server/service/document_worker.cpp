@@ -1,5 +1,6 @@
 #include "server/service/document_worker.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <exception>
@@ -70,7 +71,7 @@ DocumentWorker::Answer DocumentWorker::answer(const Order& order) {
     keep(order, document);
     return document;
   } catch (const std::exception& error) {
-    spdlog::error("{}: {}", order.key, error.what());
+    spdlog::error(fmt::format("{}: {}", order.key, error.what()));
     return Problem{500, "The document could not be made."};
   }
 }

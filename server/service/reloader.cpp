@@ -5,6 +5,7 @@
 #include "server/data/named_tables.h"
 #include "server/data/source_files.h"
 
+#include <fmt/format.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
@@ -115,7 +116,7 @@ void Reloader::follow() {
       if (!wait_for_a_reason()) return;
       load_again();
     } catch (const std::exception& error) {
-      spdlog::error("looking after the layers: {}", failure_words(error));
+      spdlog::error(fmt::format("looking after the layers: {}", failure_words(error)));
       is_loading_ = false;
     }
   }
@@ -145,7 +146,8 @@ void Reloader::load_again() {
   } catch (const std::exception& error) {
     metrics_.count_load(false);
     const std::string problem = failure_words(error);
-    spdlog::error("the layers cannot be read again, so the old ones are kept: {}", problem);
+    spdlog::error(
+        fmt::format("the layers cannot be read again, so the old ones are kept: {}", problem));
     note(problem);
   }
   return_free_memory();
@@ -174,7 +176,8 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
   begin_live(std::move(live), loaded);
   publish(std::move(loaded));
   metrics_.count_load(true);
-  spdlog::info("ready: {} layers, generation {}", layers.size(), data_.get()->generation());
+  spdlog::info(
+      fmt::format("ready: {} layers, generation {}", layers.size(), data_.get()->generation()));
   if (changes_ != nullptr && before != nullptr) changes_->note(before, data_.get());
 }
 
@@ -229,7 +232,7 @@ void Reloader::note_of_databases(const std::string& problem) {
   if (problem.empty()) {
     spdlog::info("what has changed in databases is known again");
   } else {
-    spdlog::error("what has changed is not known: {}", problem);
+    spdlog::error(fmt::format("what has changed is not known: {}", problem));
   }
 }
 
@@ -243,7 +246,7 @@ void Reloader::watch_databases() {
         "layer \"{}\": its database has not answered for {} s; until it does, no layer is read "
         "again",
         question_->layer, std::chrono::seconds(kLongAnswer).count());
-    spdlog::error("what has changed is not known: {}", database_problem_);
+    spdlog::error(fmt::format("what has changed is not known: {}", database_problem_));
   }
 }
 
@@ -314,7 +317,7 @@ void Reloader::look_for_damage() {
     if (damage == damage_) return;
     damage_ = damage;
   }
-  if (!damage.empty()) spdlog::error("{}", damage);
+  if (!damage.empty()) spdlog::error(damage);
 }
 
 bool Reloader::has_settled_change() {

@@ -1,5 +1,6 @@
 #include "server/service/server_log.h"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -37,15 +38,15 @@ void log_to(const spdlog::sink_ptr& sink) {
   spdlog::default_logger()->sinks() = {sink};
 }
 
-void warn_of_lost_lines(std::uint64_t lines) {
-  spdlog::warn("{} lines of this log were lost, as it was not read", lines);
+void warn_of_lost_server_lines(std::uint64_t lines) {
+  spdlog::warn(fmt::format("{} lines of this log were lost, as it was not read", lines));
 }
 
 }  // namespace
 
 ServerLog::ServerLog()
     : writer_(std::make_shared<LineWriter>(std::make_shared<LineFile>("stderr"),
-                                           LineWriter::Events{warn_of_lost_lines, {}})) {
+                                           LineWriter::Events{warn_of_lost_server_lines, {}})) {
   log_to(std::make_shared<QueueingSink>(writer_));
 }
 

@@ -1,5 +1,6 @@
 #include "server/service/service.h"
 
+#include <fmt/format.h>
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
@@ -23,7 +24,7 @@ constexpr milliseconds kEnd{200};  // for reading to end, at most
 StaticFiles open_viewer(const std::string& root) {
   if (root.empty()) return StaticFiles(viewer_files());
   StaticFiles files(root);
-  spdlog::info("viewer: {} files of {}", files.size(), root);
+  spdlog::info(fmt::format("viewer: {} files of {}", files.size(), root));
   return files;
 }
 
@@ -119,7 +120,7 @@ std::vector<std::string> what_is_open(const Config& config) {
 
 void log_answer(const Answered& answered) {
   if (!spdlog::should_log(spdlog::level::debug)) return;
-  spdlog::debug("{}", access_line(answered, LogFormat::text));
+  spdlog::debug(access_line(answered, LogFormat::text));
 }
 
 }  // namespace
@@ -133,7 +134,7 @@ Service::Service(const Config& config, LayerSource source)
   }
   StaticFiles files = open_viewer(config.server.web_root);
   const bool has_viewer = files.find("/") != nullptr;
-  if (!has_viewer) spdlog::info("{}", why_no_viewer(config.server.web_root));
+  if (!has_viewer) spdlog::info(why_no_viewer(config.server.web_root));
   TileServiceOptions drawing;
   drawing.queue = config.server.queue;
   drawing.deadline = milliseconds(config.server.deadline_ms);
@@ -168,7 +169,7 @@ Service::Service(const Config& config, LayerSource source)
       std::move(source),
       Reloader::Pace{milliseconds(config.server.watch_ms), milliseconds(config.server.live_ms)},
       data_, *tiles_, metrics_, changes_.get(), [this] { server_->stop(); },
-      [this] { spdlog::info("{}", address_to_open_); });
+      [this] { spdlog::info(address_to_open_); });
 }
 
 Service::~Service() = default;
@@ -214,7 +215,7 @@ void Service::act_on_signals() {
 
 // The addresses are logged only now, because whoever reads them may send a signal immediately.
 void Service::run() {
-  for (const std::string& line : where_) spdlog::info("{}", line);
+  for (const std::string& line : where_) spdlog::info(line);
   reloader_->start();  // its first messages follow these
   // Runs as long as the main server, so that the shutdown can be observed.
   std::thread admin;

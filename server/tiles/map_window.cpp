@@ -9,9 +9,6 @@
 namespace trapeze {
 namespace {
 
-// Rounding error of a zoom.
-constexpr double kZoomError = 1e-9;
-
 /// The number of the copy of the world that a place is in; 0 is the world itself.
 std::int64_t copy_at(double x) {
   return static_cast<std::int64_t>(std::floor((x - kGridMin) / static_cast<double>(kGridSize)));
@@ -63,9 +60,13 @@ View view_around(GridPosition centre, double zoom, int width, int height, int sc
 
 double zoom_of(const View& view, double scale) {
   const double cells = view.shorter_side() * scale * kTilePixels;
-  const double zoom = std::log2(static_cast<double>(kGridSize) / cells);
+  return snapped_zoom(std::log2(static_cast<double>(kGridSize) / cells));
+}
+
+double snapped_zoom(double zoom) {
+  constexpr double kRoundingError = 1e-9;
   const double whole = std::round(zoom);
-  return std::abs(zoom - whole) < kZoomError ? whole : zoom;
+  return std::abs(zoom - whole) < kRoundingError ? whole : zoom;
 }
 
 std::optional<Point> place_at(const View& view, double column, double row) {

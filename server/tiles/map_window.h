@@ -44,6 +44,9 @@ View view_around(GridPosition centre, double zoom, int width, int height, int sc
 /// the shorter side counts. Exact for tiles.
 double zoom_of(const View& view, double scale);
 
+/// The zoom, without a rounding error if it is a whole one.
+double snapped_zoom(double zoom);
+
 /// The cell of the grid at a place of the picture, given in pixels; nothing if it is north or south
 /// of the world.
 std::optional<Point> place_at(const View& view, double column, double row);

@@ -28,7 +28,7 @@ std::vector<std::string> add_fonts(const std::vector<std::string>& files, Fonts&
 std::shared_ptr<const Fonts> open_fonts(const std::vector<std::string>& files) {
   const auto fonts = std::make_shared<Fonts>();
   for (const std::string& problem : add_fonts(files.empty() ? usual_fonts() : files, *fonts)) {
-    spdlog::warn("{}", problem);
+    spdlog::warn(problem);
   }
   if (fonts->is_empty()) {
     spdlog::warn(

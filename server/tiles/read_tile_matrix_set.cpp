@@ -24,7 +24,6 @@ constexpr std::size_t kMostMatrices = 100;
 constexpr int kMostTilePixels = 4096;
 constexpr double kMostTiles = 4e9;
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
-constexpr double kMetresPerPixel = 0.00028;
 constexpr double kMostUnfit = 0.01;  // relative deviation allowed between scale and cell size
 
 [[noreturn]] void fail(const std::string& what) {

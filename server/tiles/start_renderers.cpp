@@ -1,5 +1,6 @@
 #include "server/tiles/start_renderers.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -20,11 +21,11 @@ std::vector<std::unique_ptr<MaskRenderer>> start_renderers(const RendererOptions
                                                            int count) {
   MadeRenderers made = make_renderers(options, count);
   for (const RendererFailure& failure : made.failures) {
-    spdlog::info("not rendering with {}: {}", failure.what, failure.reason);
+    spdlog::info(fmt::format("not rendering with {}: {}", failure.what, failure.reason));
   }
   const MaskRenderer& first = *made.renderers.front();
-  spdlog::info("rendering with {}: {}, {} worker{}", first.name(), first.description(), count,
-               count == 1 ? "" : "s");
+  spdlog::info(fmt::format("rendering with {}: {}, {} worker{}", first.name(), first.description(),
+                           count, count == 1 ? "" : "s"));
   return std::move(made.renderers);
 }
 

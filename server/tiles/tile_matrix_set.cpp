@@ -1,5 +1,6 @@
 #include "server/tiles/tile_matrix_set.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -13,9 +14,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kMetresPerPixel = 0.00028;  // pixel size assumed by the OGC
-constexpr double kRounding = 1e-9;           // of a tile: rounding error at a border
-constexpr double kZoomError = 1e-9;
+constexpr double kRounding = 1e-9;  // of a tile: rounding error at a border
 
 /// Sets in which every matrix has pixels half as large as the one before.
 TileMatrixSetPtr quad_tree(TileMatrixSet set, std::uint32_t columns, int last) {
@@ -82,9 +81,7 @@ TileMatrixSetPtr polar_quad(const std::string& id, const std::string& title,
 
 double TileMatrix::zoom() const {
   constexpr double kOfZoom0 = 2 * kMercatorHalfSide / kTilePixels / kMetresPerPixel;
-  const double zoom = std::log2(kOfZoom0 / scale_denominator);
-  const double whole = std::round(zoom);
-  return std::abs(zoom - whole) < kZoomError ? whole : zoom;
+  return snapped_zoom(std::log2(kOfZoom0 / scale_denominator));
 }
 
 const TileMatrix* TileMatrixSet::find(std::string_view id_of_matrix) const {
@@ -176,7 +173,7 @@ const TileMatrixSets& TileMatrixSets::built_in() {
       try {
         made.add(make());
       } catch (const std::runtime_error& error) {
-        spdlog::warn("a tile matrix set is left out: {}", error.what());
+        spdlog::warn(fmt::format("a tile matrix set is left out: {}", error.what()));
       }
     };
     add([] { return european_laea_quad(); });

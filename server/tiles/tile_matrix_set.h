@@ -17,6 +17,8 @@
 
 namespace trapeze {
 
+constexpr double kMetresPerPixel = 0.00028;  // pixel size assumed by the OGC
+
 /// The tiles of one scale.
 struct TileMatrix {
   std::string id;

@@ -1,5 +1,6 @@
 #include "server/tiles/tile_service.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ void attempt(const Action& tell) {
   try {
     tell();
   } catch (const std::exception& error) {
-    spdlog::error("a tile cannot be answered: {}", error.what());
+    spdlog::error(fmt::format("a tile cannot be answered: {}", error.what()));
   }
 }
 
@@ -359,7 +360,7 @@ void TileService::draw(TilePainter& painter, const Flights& flights) {
   try {
     answer(painter, flights);
   } catch (const std::exception& error) {
-    spdlog::error("tiles cannot be answered: {}", error.what());
+    spdlog::error(fmt::format("tiles cannot be answered: {}", error.what()));
     for (const auto& flight : flights) land(flight, {});
   }
   const Cost cost = flights.front()->order.cost;
@@ -400,8 +401,8 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
     const TileOutcome outcome = flights.size() > 1 ? TileOutcome::failed : TileOutcome::late;
     answers.assign(flights.size(), TileAnswer{outcome, {}});
   } catch (const std::exception& error) {
-    spdlog::error("tile {}{} cannot be drawn: {}", flights.front()->order.key,
-                  flights.size() > 1 ? " or one drawn with it" : "", error.what());
+    spdlog::error(fmt::format("tile {}{} cannot be drawn: {}", flights.front()->order.key,
+                              flights.size() > 1 ? " or one drawn with it" : "", error.what()));
     answers.clear();
     for (const auto& flight : flights) {
       const bool is_damaged = flight->order.plan.damaged_layer() != nullptr;
@@ -528,8 +529,8 @@ void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const ServedLayer* damaged = flights[i]->order.plan.damaged_layer();
     if (damaged == nullptr) continue;
-    spdlog::error("{} was modified while it was served; run `trapeze prepare` again",
-                  damaged->report.path);
+    spdlog::error(fmt::format("{} was modified while it was served; run `trapeze prepare` again",
+                              damaged->report.path));
     answers[i] = TileAnswer{TileOutcome::damaged, {}};
   }
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/base/nearest_name.h"
+#include "server/base/trimmed.h"
 #include "server/values/csv_reader.h"
 #include "server/values/json_rows.h"
 
@@ -27,11 +28,8 @@ constexpr std::array<std::string_view, 5> kCsvTypes = {
 constexpr std::array<std::string_view, 4> kAnyTypes = {"", "text/plain", "application/octet-stream",
                                                        "application/x-www-form-urlencoded"};
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\n";
-  const std::size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+std::string_view without_blanks(std::string_view text) {
+  return trimmed(text, " \t\r\n");
 }
 
 std::string_view without_mark(std::string_view text) {
@@ -147,7 +145,7 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
   if (!*has_names) return Problem{400, "The table is empty."};
   std::vector<std::string> names;
   for (const std::string& name : reader.fields()) {
-    names.emplace_back(trimmed(name).substr(0, kMaxNameBytes));
+    names.emplace_back(without_blanks(name).substr(0, kMaxNameBytes));
   }
   const auto places = find_places(names, options.columns);
   if (!places) return places.problem();
@@ -179,12 +177,12 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
 }  // namespace
 
 Result<TableFormat> table_format(std::string_view content_type, std::string_view body) {
-  const std::string type = in_lower_case(
-      trimmed(content_type.substr(0, std::min(content_type.find(';'), content_type.size()))));
+  const std::string type = in_lower_case(without_blanks(
+      content_type.substr(0, std::min(content_type.find(';'), content_type.size()))));
   const std::string parameters = in_lower_case(content_type);
   if (const std::size_t charset = parameters.find("charset="); charset != std::string::npos) {
     std::string_view name = std::string_view(parameters).substr(charset + 8);
-    name = trimmed(name.substr(0, name.find(';')));
+    name = without_blanks(name.substr(0, name.find(';')));
     if (name.size() > 1 && name.starts_with('"')) name = name.substr(1, name.size() - 2);
     if (name != "utf-8" && name != "utf8" && name != "us-ascii") {
       return Problem{415, "Tables are in UTF-8.", "Content-Type", std::string(content_type),
@@ -194,7 +192,7 @@ Result<TableFormat> table_format(std::string_view content_type, std::string_view
   if (std::ranges::find(kCsvTypes, type) != kCsvTypes.end()) return TableFormat::csv;
   if (type == "application/json") return TableFormat::json;
   if (std::ranges::find(kAnyTypes, type) != kAnyTypes.end()) {
-    const std::string_view begin = trimmed(without_mark(body.substr(0, 1024)));
+    const std::string_view begin = without_blanks(without_mark(body.substr(0, 1024)));
     return begin.starts_with('[') || begin.starts_with('{') ? TableFormat::json : TableFormat::csv;
   }
   return Problem{415, "A table is CSV or JSON.", "Content-Type", std::string(content_type),

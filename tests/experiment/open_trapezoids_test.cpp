@@ -17,8 +17,7 @@
 namespace trapeze::experiment {
 namespace {
 
-constexpr unsigned kShapes = 350;
-constexpr Box kEverything{kGridMin, kGridMin, kGridMax, kGridMax};
+constexpr unsigned kOpenShapes = 350;
 using Boundary = OpenTrapezoids::Boundary;
 
 using Numbers = std::array<std::int32_t, 10>;
@@ -80,7 +79,7 @@ double area_between(const TrapezoidList& trapezoids, std::int32_t top, std::int3
 }
 
 TEST(OpenTrapezoids, AreTheTrapezoidsOfTheCore) {
-  for (const PolygonSet& set : random_polygon_sets(kShapes)) {
+  for (const PolygonSet& set : random_polygon_sets(kOpenShapes)) {
     for (std::size_t p = 0; p < set.size(); ++p) {
       Rings rings;
       for (std::uint32_t r = set.first_ring(p); r < set.ends[p]; ++r) rings.add(set.rings[r]);
@@ -110,7 +109,7 @@ TEST(OpenTrapezoids, NodesWhatCrosses) {
 
 // Without previous cleaning, as after a simplification without topology.
 TEST(OpenTrapezoids, DrawRingsInAnyStateByEvenOdd) {
-  for (unsigned seed = 0; seed < kShapes; ++seed) {
+  for (unsigned seed = 0; seed < kOpenShapes; ++seed) {
     const Rings rings = random_shape(seed);
     Rings clean = rings;
     clean_rings(clean);
@@ -126,7 +125,7 @@ TEST(OpenTrapezoids, DrawRingsInAnyStateByEvenOdd) {
 
 TEST(OpenTrapezoids, CutToTheViewCoverWhatTheyCoverThere) {
   UnitNumbers random(3);
-  for (const PolygonSet& set : random_polygon_sets(kShapes)) {
+  for (const PolygonSet& set : random_polygon_sets(kOpenShapes)) {
     for (std::size_t p = 0; p < set.size(); ++p) {
       Rings rings;
       for (std::uint32_t r = set.first_ring(p); r < set.ends[p]; ++r) rings.add(set.rings[r]);

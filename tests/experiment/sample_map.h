@@ -5,8 +5,12 @@
 #include <vector>
 
 #include "bench/experiment/map_data.h"
+#include "core/grid/grid.h"
 
 namespace trapeze::experiment {
+
+/// All of the grid.
+inline constexpr Box kEverything{kGridMin, kGridMin, kGridMax, kGridMax};
 
 /// The polygons of random_shape(0) to random_shape(count - 1), each on its own.
 std::vector<PolygonSet> random_polygon_sets(unsigned count);

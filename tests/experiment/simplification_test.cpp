@@ -11,7 +11,7 @@
 namespace trapeze::experiment {
 namespace {
 
-constexpr unsigned kShapes = 210;
+constexpr unsigned kSimplifiedShapes = 210;
 constexpr double kTolerances[] = {0, 0.5, 3, 20, 150, 5000, 1e9};
 
 std::vector<std::uint32_t> kept_vertices(RingSimplifier& simplifier, std::uint32_t ring,
@@ -25,7 +25,7 @@ std::vector<std::uint32_t> kept_vertices(RingSimplifier& simplifier, std::uint32
 
 TEST(DouglasPeucker, KeepsTheVerticesWhoseWeightInTheCoreIsTheToleranceOrMore) {
   VertexWeights weights;
-  for (const PolygonSet& set : random_polygon_sets(kShapes)) {
+  for (const PolygonSet& set : random_polygon_sets(kSimplifiedShapes)) {
     DouglasPeucker simplifier(set);
     for (std::uint32_t ring = 0; ring < set.rings.size(); ++ring) {
       const auto weight = weights.weigh(set.rings[ring], WeightRule::douglas_peucker);
@@ -41,7 +41,7 @@ TEST(DouglasPeucker, KeepsTheVerticesWhoseWeightInTheCoreIsTheToleranceOrMore) {
 }
 
 TEST(BlgTrees, KeepWhatDouglasPeuckerKeeps) {
-  for (const PolygonSet& set : random_polygon_sets(kShapes)) {
+  for (const PolygonSet& set : random_polygon_sets(kSimplifiedShapes)) {
     DouglasPeucker douglas_peucker(set);
     BlgTrees trees(set);
     for (std::uint32_t ring = 0; ring < set.rings.size(); ++ring) {
@@ -55,7 +55,7 @@ TEST(BlgTrees, KeepWhatDouglasPeuckerKeeps) {
 }
 
 TEST(Chains, AreSplitWhereTheyAreFarthestFromTheirChord) {
-  for (const PolygonSet& set : random_polygon_sets(kShapes)) {
+  for (const PolygonSet& set : random_polygon_sets(kSimplifiedShapes)) {
     DouglasPeucker douglas_peucker(set);
     BlgTrees trees(set);
     std::vector<Chain> chains;

@@ -8,8 +8,6 @@
 namespace trapeze::experiment {
 namespace {
 
-constexpr Box kEverything{kGridMin, kGridMin, kGridMax, kGridMax};
-
 double area_of(const TrapezoidList& trapezoids) {
   double area = 0;
   for (const TrapezoidRecord& t : trapezoids.records) {

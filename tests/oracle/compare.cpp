@@ -15,7 +15,7 @@ std::array<double, 4> premultiplied(Rgba colour) {
   return {colour.r * a, colour.g * a, colour.b * a, static_cast<double>(colour.a)};
 }
 
-std::string text_of(std::array<double, 4> channels) {
+std::string text_of_channels(std::array<double, 4> channels) {
   std::string text;
   for (const double channel : channels) text += " " + std::to_string(std::lround(channel));
   return text;
@@ -63,7 +63,7 @@ Distance compare(const Picture& picture, const Comparison& comparison) {
       }
       const auto here = [&] {
         return comparison.place + " pixel " + std::to_string(column) + "," + std::to_string(row) +
-               " is" + text_of(drawn) + " and not" + text_of(truth);
+               " is" + text_of_channels(drawn) + " and not" + text_of_channels(truth);
       };
       ++distance.pixels;
       if (off > kPlainlyDifferent) ++distance.plainly_different;

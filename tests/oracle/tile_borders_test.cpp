@@ -12,23 +12,23 @@ namespace trapeze::oracle {
 namespace {
 
 /// Layers of one place, and a tile of zoom 16 with many features.
-struct Place {
+struct BorderCase {
   std::vector<std::string> layers;
   TileName tile;
 };
 
-void PrintTo(const Place& place, std::ostream* out) {
+void PrintTo(const BorderCase& place, std::ostream* out) {
   *out << place.layers.front();
 }
 
-const std::vector<Place> kPlaces = {
+const std::vector<BorderCase> kPlaces = {
     {{"malta_landuse", "malta_natural", "malta_buildings"}, {16, 35408, 25758}},
     {{"melbourne_landuse", "melbourne_natural"}, {16, 59157, 40213}},
     {{"shenzhen_water", "shenzhen_buildings"}, {16, 53531, 28554}},
     {{"us_counties"}, {16, 17403, 26245}},
 };
-constexpr int kFirstZoom = 7;
-constexpr int kLastZoom = 16;
+constexpr int kFirstBorderZoom = 7;
+constexpr int kLastBorderZoom = 16;
 
 /// Premultiplied, from 0 to 255.
 double channel(Rgba colour, std::size_t i) {
@@ -59,7 +59,7 @@ struct Drawn {
   Picture exact;
 };
 
-class TileBordersTest : public ::testing::TestWithParam<Place> {
+class TileBordersTest : public ::testing::TestWithParam<BorderCase> {
  protected:
   void SetUp() override {
     const char* data = std::getenv("TRAPEZE_DATA");
@@ -91,8 +91,8 @@ TEST_P(TileBordersTest, AreNoPlaceOfMoreChange) {
   };
   Steps across;
   Steps within;
-  for (int zoom = kFirstZoom; zoom <= kLastZoom; ++zoom) {
-    const unsigned up = static_cast<unsigned>(kLastZoom - zoom);
+  for (int zoom = kFirstBorderZoom; zoom <= kLastBorderZoom; ++zoom) {
+    const unsigned up = static_cast<unsigned>(kLastBorderZoom - zoom);
     const TileName west{zoom, GetParam().tile.x >> up, GetParam().tile.y >> up};
     const Drawn left = draw(west);
     const Drawn right = draw({zoom, west.x + 1, west.y});

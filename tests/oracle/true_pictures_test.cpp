@@ -13,8 +13,8 @@
 namespace trapeze::oracle {
 namespace {
 
-constexpr int kFirstZoom = 8;
-constexpr int kLastZoom = 18;
+constexpr int kFirstPictureZoom = 8;
+constexpr int kLastPictureZoom = 18;
 constexpr int kFirstDeepZoom = 14;
 constexpr int kFirstZoomInDegrees = 4;
 
@@ -170,7 +170,7 @@ TEST_P(TruePicturesTest, AreTrueInEveryStyleAtEveryZoom) {
   HeldToTruth held(
       {real_->names(), real_->layers(), {{"coverage off", &off}, {"coverage auto", &automatic}}});
   const TrueClasses classes = classes_of(real_->upper(), GetParam().attribute);
-  for (int zoom = kFirstZoom; zoom <= kLastZoom; ++zoom) {
+  for (int zoom = kFirstPictureZoom; zoom <= kLastPictureZoom; ++zoom) {
     for (const TileName tile : real_->tiles(zoom)) held.look_at(tile, classes);
   }
   expect_true(held, name_of(GetParam()), kExceptions);
@@ -186,7 +186,7 @@ TEST_P(TrueInDegreesTest, AreTrueInEveryStyleAtEveryZoom) {
   Program automatic(real.files(), CoverageMode::automatic, Map::degrees);
   HeldToTruth held({real.names(), real.layers(), {{"degrees", &automatic}}});
   const TrueClasses classes = classes_of(real.upper(), GetParam().attribute);
-  for (int zoom = kFirstZoomInDegrees; zoom <= kLastZoom; zoom += 2) {
+  for (int zoom = kFirstZoomInDegrees; zoom <= kLastPictureZoom; zoom += 2) {
     for (const TileName tile : real.tiles(zoom)) held.look_at(tile, classes);
   }
   expect_true(held, name_of(GetParam()), kExceptions);
@@ -224,7 +224,7 @@ TEST_P(CoverageOfRealLayersTest, OneColourIsOpaqueEverywhereInside) {
   const std::vector<std::vector<TruePaint>> plain = {styles.front().paints};
   Workspace workspace;
   std::size_t inner = 0;
-  for (int zoom = kFirstZoom; zoom <= kFirstDeepZoom; ++zoom) {
+  for (int zoom = kFirstPictureZoom; zoom <= kFirstDeepZoom; ++zoom) {
     for (const TileName tile : real_->tiles(zoom)) {
       const auto truth = TrueTile(real_->layers(), tile).paint(plain, workspace);
       const Picture picture = automatic.tile(real_->names(), tile, styles.front().query);

@@ -12,8 +12,8 @@
 namespace trapeze::testing {
 namespace {
 
-constexpr int kLastZoom = 22;
-constexpr int kTilesPerZoom = 4;
+constexpr int kLastGlZoom = 22;
+constexpr int kGlTilesPerZoom = 4;
 
 class GlAgreementTest : public ::testing::TestWithParam<std::string> {
  protected:
@@ -43,8 +43,8 @@ TEST_P(GlAgreementTest, EveryTileIsThatOfTheSoftwareRenderer) {
   int worst = 0;
   std::size_t above_1 = 0;
   int pictures = 0;
-  for (int zoom = 0; zoom <= kLastZoom; ++zoom) {
-    for (const TileId& tile : tiles_around_vertices(*real_, zoom, kTilesPerZoom, 1)) {
+  for (int zoom = 0; zoom <= kLastGlZoom; ++zoom) {
+    for (const TileId& tile : tiles_around_vertices(*real_, zoom, kGlTilesPerZoom, 1)) {
       Layer::Selection selection = default_selection(View::of_tile(tile));
       for (const Level level : {selection.level, Level{0}}) {
         selection.level = level;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kBytesAtOnce = std::size_t{1} << 30;  // accepted by a single write
 
-[[noreturn]] void fail(const std::string& path) {
+[[noreturn]] void fail_to_write(const std::string& path) {
   throw std::runtime_error("cannot write " + path + ": " + std::generic_category().message(errno));
 }
 
@@ -38,7 +38,7 @@ AtomicFile::AtomicFile(const std::string& path)
       temporary_(Unfinished::file_beside(path)),
       // Read-only: writing to a mapped file would change what is being served.
       descriptor_(open(temporary_.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444)) {
-  if (descriptor_ < 0) fail(path_);
+  if (descriptor_ < 0) fail_to_write(path_);
 }
 
 AtomicFile::~AtomicFile() {
@@ -50,7 +50,7 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
     const ssize_t written =
         ::write(descriptor_, bytes.data(), std::min(bytes.size(), kBytesAtOnce));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path_);
+    if (written < 0) fail_to_write(path_);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
 }
@@ -60,7 +60,7 @@ void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
     const ssize_t written = pwrite(descriptor_, bytes.data(), std::min(bytes.size(), kBytesAtOnce),
                                    static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path_);
+    if (written < 0) fail_to_write(path_);
     offset += static_cast<std::uint64_t>(written);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
@@ -69,20 +69,20 @@ void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
 void AtomicFile::finish() {
   const int descriptor = descriptor_;
   descriptor_ = -1;
-  if (close(descriptor) != 0) fail(path_);
+  if (close(descriptor) != 0) fail_to_write(path_);
   give_name_durably(temporary_, path_);
 }
 
 void give_name_durably(const Unfinished& unfinished, const std::string& path) {
   const int descriptor = open(unfinished.path().c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) fail(path);
+  if (descriptor < 0) fail_to_write(path);
   struct stat status {};
   const bool is_folder = fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode);
   const int result = is_folder ? syncfs(descriptor) : fsync(descriptor);
   const int reason = errno;
   close(descriptor);
   errno = reason;
-  if (result != 0) fail(path);
+  if (result != 0) fail_to_write(path);
   std::error_code error;
   Unfinished::give_name(unfinished.path(), path, error);
   if (error) throw std::runtime_error("cannot write " + path + ": " + error.message());

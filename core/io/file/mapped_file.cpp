@@ -17,13 +17,13 @@
 namespace trapeze {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
+[[noreturn]] void fail_to_map(const std::string& path, const std::string& what) {
   throw std::runtime_error(path + ": " + what);
 }
 
 int open_or_throw(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) fail(path, std::string("cannot be read: ") + std::strerror(errno));
+  if (file < 0) fail_to_map(path, std::string("cannot be read: ") + std::strerror(errno));
   return file;
 }
 
@@ -122,13 +122,17 @@ MappedFile::MappedFile(const std::string& path, Pages pages) : file_(open_or_thr
 
 void MappedFile::map(const std::string& path, Pages pages) {
   struct stat status {};
-  if (fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) fail(path, "is no regular file");
+  if (fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    fail_to_map(path, "is no regular file");
+  }
   modified_ = modified_of(status);
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return;
   const int flags = pages == Pages::at_once ? MAP_SHARED | MAP_POPULATE : MAP_SHARED;
   void* memory = mmap(nullptr, size, PROT_READ, flags, file_, 0);
-  if (memory == MAP_FAILED) fail(path, std::string("cannot be mapped: ") + std::strerror(errno));
+  if (memory == MAP_FAILED) {
+    fail_to_map(path, std::string("cannot be mapped: ") + std::strerror(errno));
+  }
   bytes_ = {static_cast<const std::byte*>(memory), size};
   MappingGuard::add(bytes_);
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kBytesForAThread = std::size_t{1} << 21;
 constexpr std::array<std::byte, kSectionAlignment> kPadding{};
 
-[[noreturn]] void fail(const std::string& words) {
+[[noreturn]] void reject_file(const std::string& words) {
   throw PreparedFileError(words);
 }
 
@@ -35,9 +35,9 @@ bool is_zero(std::span<const std::byte> bytes) {
 
 PreparedHeader read_header(std::span<const std::byte> file) {
   PreparedHeader header;
-  if (file.size() < sizeof header) fail("is cut off");
+  if (file.size() < sizeof header) reject_file("is cut off");
   std::memcpy(&header, file.data(), sizeof header);
-  if (header.magic != kPreparedMagic) fail("is not a prepared file");
+  if (header.magic != kPreparedMagic) reject_file("is not a prepared file");
   if (header.byte_order != kByteOrderMark) {
     throw OtherFormatError("was prepared on a machine of another byte order");
   }
@@ -46,10 +46,10 @@ PreparedHeader read_header(std::span<const std::byte> file) {
                            ", and this version of Trapeze reads " +
                            std::to_string(kPreparedVersion));
   }
-  if (header.header_checksum != checksum_of_header(header)) fail("is damaged: its header");
+  if (header.header_checksum != checksum_of_header(header)) reject_file("is damaged: its header");
   if (header.file_size != file.size()) {
-    fail("is damaged: it has " + std::to_string(file.size()) + " of " +
-         std::to_string(header.file_size) + " bytes");
+    reject_file("is damaged: it has " + std::to_string(file.size()) + " of " +
+                std::to_string(header.file_size) + " bytes");
   }
   return header;
 }
@@ -60,14 +60,14 @@ class Cutter {
   explicit Cutter(std::span<const std::byte> rest) : rest_(rest) {}
 
   std::span<const std::byte> cut(std::size_t size) {
-    if (size > rest_.size()) fail("is damaged: its directory leads beyond its end");
+    if (size > rest_.size()) reject_file("is damaged: its directory leads beyond its end");
     const auto front = rest_.first(size);
     rest_ = rest_.subspan(size);
     return front;
   }
   std::span<const std::byte> cut(std::uint64_t count, std::uint64_t item_size) {
     if (item_size == 0 || count > rest_.size() / item_size) {
-      fail("is damaged: its directory leads beyond its end");
+      reject_file("is damaged: its directory leads beyond its end");
     }
     return cut(count * item_size);
   }
@@ -162,7 +162,7 @@ void SectionReader::read_directory(std::span<const std::byte> file) {
   const auto directory = rest.cut(header_.section_count, sizeof(DirectoryEntry));
   const bool is_intact = checksum(directory) == header_.directory_checksum;
   if (!is_intact || !is_zero(rest.cut(padding_after(directory.size())))) {
-    fail("is damaged: its directory");
+    reject_file("is damaged: its directory");
   }
   sections_.resize(header_.section_count);
   for (std::size_t i = 0; i < sections_.size(); ++i) {
@@ -172,7 +172,7 @@ void SectionReader::read_directory(std::span<const std::byte> file) {
     section.bytes = rest.cut(section.entry.count, section.entry.item_size);
     section.padding = rest.cut(padding_after(section.bytes.size()));
   }
-  if (!rest.is_at_end()) fail("is damaged: there is more than its directory says");
+  if (!rest.is_at_end()) reject_file("is damaged: there is more than its directory says");
 }
 
 /// Checks the first `count` sections.
@@ -182,7 +182,7 @@ void SectionReader::check_sections(std::size_t count) const {
   for_each_in_parallel(count, 1 + bytes / kBytesForAThread, [this](std::size_t i) {
     const Section& section = sections_[i];
     if (checksum(section.bytes) != section.entry.checksum || !is_zero(section.padding)) {
-      fail("is damaged: its section \"" + name_of(section.entry.kind) + "\"");
+      reject_file("is damaged: its section \"" + name_of(section.entry.kind) + "\"");
     }
   });
 }
@@ -190,13 +190,13 @@ void SectionReader::check_sections(std::size_t count) const {
 std::span<const std::byte> SectionReader::take_bytes(SectionKind kind, std::size_t item_size) {
   if (next_ == sections_.size() || sections_[next_].entry.kind != kind ||
       sections_[next_].entry.item_size != item_size) {
-    fail("is damaged: it has no section \"" + name_of(kind) + "\" where it should be");
+    reject_file("is damaged: it has no section \"" + name_of(kind) + "\" where it should be");
   }
   return sections_[next_++].bytes;
 }
 
 void SectionReader::finish() const {
-  if (next_ != sections_.size()) fail("is damaged: it has sections that nothing needs");
+  if (next_ != sections_.size()) reject_file("is damaged: it has sections that nothing needs");
 }
 
 }  // namespace trapeze

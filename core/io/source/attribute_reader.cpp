@@ -77,7 +77,7 @@ bool is_list(OGRFieldType type) {
 }
 
 // A value that is not text, formatted without loss.
-std::string in_words(const OGRFeature& feature, int index, OGRFieldType type) {
+std::string value_in_words(const OGRFeature& feature, int index, OGRFieldType type) {
   if (type == OFTInteger || type == OFTInteger64) {
     return shortest(feature.GetFieldAsInteger64(index));
   }
@@ -147,7 +147,7 @@ Value AttributeReader::read_value(const OGRFeature& feature, int index, std::siz
   }
   if (fields_[field].type == FieldType::real) return feature.GetFieldAsDouble(index);
   if (type == OFTString) return utf8_text(field, feature.GetFieldAsString(index));
-  return keep_text(field, in_words(feature, index, type));
+  return keep_text(field, value_in_words(feature, index, type));
 }
 
 Value AttributeReader::keep_text(std::size_t field, std::string text) {

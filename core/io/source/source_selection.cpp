@@ -5,7 +5,8 @@
 namespace trapeze {
 namespace {
 
-std::string in_words(const std::string& source, const std::vector<SelectionProblem>& problems) {
+std::string problems_in_words(const std::string& source,
+                              const std::vector<SelectionProblem>& problems) {
   std::string words = source + ": ";
   for (const SelectionProblem& problem : problems) {
     if (&problem != &problems.front()) words += "; ";
@@ -17,6 +18,6 @@ std::string in_words(const std::string& source, const std::vector<SelectionProbl
 }  // namespace
 
 SelectionError::SelectionError(const std::string& source, std::vector<SelectionProblem> problems)
-    : std::runtime_error(in_words(source, problems)), problems_(std::move(problems)) {}
+    : std::runtime_error(problems_in_words(source, problems)), problems_(std::move(problems)) {}
 
 }  // namespace trapeze

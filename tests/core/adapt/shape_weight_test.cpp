@@ -19,13 +19,13 @@
 namespace trapeze {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kAlwaysKept = std::numeric_limits<double>::infinity();
 
 using Line = ShapeWeights::Line;
 using Points = std::vector<Point>;
 
 std::vector<double> weigh(const Points& points, Line line) {
-  std::vector<double> weights(points.size(), kInfinite);
+  std::vector<double> weights(points.size(), kAlwaysKept);
   ShapeWeights().weigh(points, line, weights);
   return weights;
 }
@@ -154,7 +154,7 @@ TEST(ShapeWeights, CostsAreTheSameFromBothSides) {
 
 /// Recomputes everything after every step.
 std::vector<double> weights_the_plain_way(const Points& points, Line line) {
-  std::vector<double> weights(points.size(), kInfinite);
+  std::vector<double> weights(points.size(), kAlwaysKept);
   std::vector<std::size_t> left;
   for (std::size_t i = 0; i < points.size(); ++i) left.push_back(i);
   double greatest = 0;
@@ -219,9 +219,9 @@ TEST(ShapeWeights, OfAnArcAreThoseOfTheArcBackwards) {
     if (rings.empty()) continue;
     Points arc(rings[0].begin(), rings[0].end());
     std::vector<double> weights = weigh(arc, Line::arc);
-    EXPECT_EQ(weights.front(), kInfinite);
-    EXPECT_EQ(weights.back(), kInfinite);
-    EXPECT_LE(std::ranges::count(weights, kInfinite), 2);
+    EXPECT_EQ(weights.front(), kAlwaysKept);
+    EXPECT_EQ(weights.back(), kAlwaysKept);
+    EXPECT_LE(std::ranges::count(weights, kAlwaysKept), 2);
     std::ranges::reverse(arc);
     std::ranges::reverse(weights);
     EXPECT_EQ(weigh(arc, Line::arc), weights) << seed;
@@ -229,7 +229,7 @@ TEST(ShapeWeights, OfAnArcAreThoseOfTheArcBackwards) {
 }
 
 TEST(ShapeWeights, AnArcOfTwoPointsAndOneThatEndsWhereItBegins) {
-  EXPECT_EQ(weigh({{0, 0}, {5, 5}}, Line::arc), (std::vector<double>{kInfinite, kInfinite}));
+  EXPECT_EQ(weigh({{0, 0}, {5, 5}}, Line::arc), (std::vector<double>{kAlwaysKept, kAlwaysKept}));
   const std::vector<double> weights = weigh({{0, 0}, {10, 0}, {10, 10}, {0, 0}}, Line::arc);
   EXPECT_EQ(weights[1], weights[2]);
   EXPECT_TRUE(std::isfinite(weights[1]));

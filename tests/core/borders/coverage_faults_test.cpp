@@ -19,12 +19,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-std::vector<const Rings*> pointers_to(const std::vector<Rings>& features) {
-  std::vector<const Rings*> pointers;
-  for (const Rings& rings : features) pointers.push_back(&rings);
-  return pointers;
-}
-
 CoverageFaults faults_of(const std::vector<std::string>& texts) {
   std::vector<Rings> features;
   for (const std::string& text : texts) features.push_back(rings_from_text(text));

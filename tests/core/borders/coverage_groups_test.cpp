@@ -276,7 +276,7 @@ TEST(CoverageGroups, OfACrowdOnlyThoseThatOverlapStayApart) {
   EXPECT_TRUE(assembly.outcome.is_crowded);
   EXPECT_EQ(assembly.outcome.failure, "");
   EXPECT_GT(assembly.apart.size(), 250u);
-  EXPECT_THAT(assembly.together, testing::IsSupersetOf({300u, 301u}));
+  EXPECT_THAT(assembly.together, ::testing::IsSupersetOf({300u, 301u}));
 }
 
 TEST(CoverageGroups, ACrowdOfNothingElseIsNoCoverage) {

@@ -133,4 +133,11 @@ inline std::vector<Rings> random_coverage(unsigned seed) {
   return features;
 }
 
+/// The features of a coverage, for a builder.
+inline std::vector<const Rings*> pointers_to(const std::vector<Rings>& features) {
+  std::vector<const Rings*> pointers;
+  for (const Rings& rings : features) pointers.push_back(&rings);
+  return pointers;
+}
+
 }  // namespace trapeze

@@ -20,7 +20,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kAll = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr unsigned kShapes = testing::kIsSanitized ? 60 : 160;
 
 using Texts = std::vector<std::string>;
@@ -31,18 +31,14 @@ std::vector<Rings> features_from_text(const Texts& texts) {
   return features;
 }
 
-std::vector<const Rings*> pointers_to(const std::vector<Rings>& features) {
-  std::vector<const Rings*> pointers;
-  for (const Rings& rings : features) pointers.push_back(&rings);
-  return pointers;
-}
-
 struct BuiltCoverage {
   CoverageOutcome outcome;
   TrapezoidalGraph graph;
 
-  explicit BuiltCoverage(const std::vector<Rings>& features, double narrowest_overlap = kAll) {
-    const CoverageTolerance tolerance{.most_overlap = kAll, .narrowest_overlap = narrowest_overlap};
+  explicit BuiltCoverage(const std::vector<Rings>& features,
+                         double narrowest_overlap = kUnlimited) {
+    const CoverageTolerance tolerance{.most_overlap = kUnlimited,
+                                      .narrowest_overlap = narrowest_overlap};
     outcome = CoverageBuilder().build(pointers_to(features), tolerance, graph);
     EXPECT_EQ(outcome.failure, "");
     if (!outcome.built) return;
@@ -137,7 +133,7 @@ void expect_map_of_what_is_left(const TrapezoidalGraph& graph) {
   const std::vector<Rings> rings = rings_of_faces(graph);
   TrapezoidalGraph fresh;
   const CoverageOutcome outcome =
-      CoverageBuilder().build(pointers_to(rings), {.most_overlap = kAll}, fresh);
+      CoverageBuilder().build(pointers_to(rings), {.most_overlap = kUnlimited}, fresh);
   EXPECT_FALSE(outcome.noded) << "the borders that are left cross or touch";
   if (!outcome.built) {
     EXPECT_EQ(graph.inside_nodes().size(), 0u);
@@ -182,7 +178,7 @@ TEST(Coverage, StateDependsOnTheToleranceOnly) {
       direct.adapt_to(epsilon);
       ASSERT_EQ(wandering.graph(), direct.graph()) << "at " << epsilon;
     }
-    wandering.adapt_to(kAll);
+    wandering.adapt_to(kUnlimited);
     wandering.adapt_to(0);
     EXPECT_EQ(wandering.graph(), c.graph);
   }

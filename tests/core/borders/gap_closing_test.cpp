@@ -146,12 +146,6 @@ std::vector<Rings> buildings(int columns) {
   return features;
 }
 
-std::vector<const Rings*> pointers_to(const std::vector<Rings>& features) {
-  std::vector<const Rings*> pointers;
-  for (const Rings& rings : features) pointers.push_back(&rings);
-  return pointers;
-}
-
 TEST(GapClosing, FeaturesOfItsOwnSizeAreLeftAsTheyAre) {
   const std::vector<Rings> drawn = buildings(12);
   const Closing c(drawn, 50);

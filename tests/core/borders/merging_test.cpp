@@ -29,7 +29,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kAll = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Buildings of random sizes and shapes on both sides of streets, rotated by an angle.
 std::vector<Rings> town(unsigned seed, int houses, double angle = 0) {
@@ -79,7 +79,7 @@ struct BuiltTown {
   explicit BuiltTown(const std::vector<Rings>& features, const Merging& merging) {
     std::vector<const Rings*> pointers;
     for (const Rings& rings : features) pointers.push_back(&rings);
-    const CoverageTolerance tolerance{.most_overlap = kAll, .narrowest_overlap = 32};
+    const CoverageTolerance tolerance{.most_overlap = kInfinity, .narrowest_overlap = 32};
     outcome = CoverageBuilder().build(pointers, tolerance, graph, nullptr, 1, merging);
     EXPECT_EQ(outcome.failure, "");
     EXPECT_EQ(check_graph(graph), "");
@@ -198,13 +198,13 @@ TEST(Merging, WhatIsFilledIsTheLargestSetThatBridgesNoMore) {
       std::vector<bool> is_filled(mesh.triangle_count());
       for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
         std::array<double, 3> sides{};
-        double across = kAll;
+        double across = kInfinity;
         for (std::uint32_t i = 0; i < 3 && !mesh.is_beyond(t); ++i) {
           sides[i] = mesh.length(3 * t + i);
           if (mesh.is_wall(3 * t + i)) across = std::min(across, mesh.distance_across(3 * t + i));
         }
         std::sort(sides.begin(), sides.end());
-        is_filled[t] = !mesh.is_beyond(t) && (across < kAll ? across : sides[1]) <= distance;
+        is_filled[t] = !mesh.is_beyond(t) && (across < kInfinity ? across : sides[1]) <= distance;
       }
       for (bool has_changed = true; has_changed;) {
         has_changed = false;
@@ -233,7 +233,7 @@ double distance_between(Point p, Point a, Point b) {
 
 /// For polygons that do not meet.
 double distance_between(const Rings& a, const Rings& b) {
-  double least = kAll;
+  double least = kInfinity;
   for (const auto& [points, walls] : {std::pair(&a, &b), std::pair(&b, &a)}) {
     for (const Point p : points->points) {
       for (std::size_t r = 0; r < walls->size(); ++r) {

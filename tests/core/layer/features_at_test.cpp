@@ -13,12 +13,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-Rings square(std::int32_t x, std::int32_t y, std::int32_t side) {
-  Rings rings;
-  rings.add(std::vector<Point>{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}});
-  return rings;
-}
-
 /// By the parity of the edges to the east, without trapezoids.
 bool is_inside(Point p, const Rings& rings) {
   bool inside = false;

@@ -33,7 +33,7 @@ struct Feature {
 using Features = std::vector<Feature>;
 
 /// As loading a file of the features would build it.
-std::unique_ptr<Layer> build(const Features& features, const LayerOptions& options) {
+std::unique_ptr<Layer> build_from(const Features& features, const LayerOptions& options) {
   FeatureTable table(std::vector<Field>{{"name", FieldType::text}, {"points", FieldType::integer}});
   std::vector<Rings> rings;
   for (const Feature& feature : features) {
@@ -204,7 +204,7 @@ class Edited {
   Edited(unsigned seed, const LayerOptions& options) : random_(seed), options_(options) {
     for (Rings& rings : sample_map(seed)) features_.push_back({next_id_++, rings, name()});
     first_features_ = features_;
-    patcher_ = std::make_unique<LayerPatcher>(*build(features_, options));
+    patcher_ = std::make_unique<LayerPatcher>(*build_from(features_, options));
   }
 
   /// Changes a few features at the same time.
@@ -227,7 +227,7 @@ class Edited {
       const auto feature = std::ranges::find(features_, id, &Feature::id);
       if (feature != features_.end()) features.push_back(*feature);
     }
-    return patcher_->apply({to_build, *build(features, options_)});
+    return patcher_->apply({to_build, *build_from(features, options_)});
   }
 
   /// The features are reset to the first state, too.
@@ -238,7 +238,7 @@ class Edited {
 
   const Layer& patched() const { return *patcher_->now(); }
   const LayerPatcher& patcher() const { return *patcher_; }
-  std::unique_ptr<Layer> whole() const { return build(features_, options_); }
+  std::unique_ptr<Layer> whole() const { return build_from(features_, options_); }
 
  private:
   std::size_t below(std::size_t end) {
@@ -342,11 +342,11 @@ TEST(LayerPatcherTest, ChangesAreWhereSomethingLooksDifferent) {
 
 TEST(LayerPatcherTest, RefusesFeaturesOfOneIdAndOtherAttributes) {
   const Features twice = {{1, random_shape(1), "a"}, {1, random_shape(2), "b"}};
-  EXPECT_THROW(LayerPatcher(*build(twice, {})), std::invalid_argument);
+  EXPECT_THROW(LayerPatcher(*build_from(twice, {})), std::invalid_argument);
   const Features once = {{1, random_shape(1), "a"}};
-  LayerPatcher patcher(*build(once, {}));
+  LayerPatcher patcher(*build_from(once, {}));
   const std::vector<std::int64_t> ids = {1};
-  EXPECT_THROW(patcher.apply({ids, *build(twice, {})}), std::invalid_argument);
+  EXPECT_THROW(patcher.apply({ids, *build_from(twice, {})}), std::invalid_argument);
   std::vector<LayerBuilder> builders;
   builders.emplace_back(LayerOptions());
   FeatureTable other(std::vector<Field>{{"height", FieldType::real}});

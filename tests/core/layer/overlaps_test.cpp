@@ -17,7 +17,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
-using ::testing::Field;
 using ::testing::IsEmpty;
 using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
@@ -36,14 +35,9 @@ Pairs pairs_of(const Layer& layer) {
 }
 
 auto overlap(std::uint32_t row, std::uint32_t other, const auto& width) {
-  return AllOf(Field(&FeatureOverlap::row, row), Field(&FeatureOverlap::other, other),
-               Field(&FeatureOverlap::width, width));
-}
-
-Rings square(int x, int y, int side) {
-  Rings rings;
-  rings.add(std::vector<Point>{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}});
-  return rings;
+  return AllOf(::testing::Field(&FeatureOverlap::row, row),
+               ::testing::Field(&FeatureOverlap::other, other),
+               ::testing::Field(&FeatureOverlap::width, width));
 }
 
 TEST(OverlapsTest, NeighboursThatTouchHaveNone) {

@@ -24,7 +24,6 @@ namespace {
 
 using PointOnWay = PlateCarreeMesh::PointOnWay;
 
-constexpr Box kEverywhere{kGridMin, kGridMin, kGridMax, kGridMax};
 constexpr std::int32_t kLarger = 1024;  // makes rounding to cells negligible
 
 Rings larger(Rings rings) {

@@ -20,7 +20,6 @@ namespace trapeze {
 namespace {
 
 constexpr double kPixel = 4096;  // cells; makes rounding to cells negligible
-constexpr Box kEverywhere{kGridMin, kGridMin, kGridMax, kGridMax};
 
 using Ring = std::vector<Vector>;  // in pixels
 

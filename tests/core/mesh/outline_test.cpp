@@ -17,7 +17,7 @@ namespace {
 
 constexpr Box kWorld{kGridMin, kGridMin, kGridMax, kGridMax};
 
-std::unique_ptr<Layer> layer_of(Rings rings) {
+std::unique_ptr<Layer> layer_of_polygon(Rings rings) {
   std::vector<LayerBuilder> builders(1);
   FeatureTable table(std::vector<Field>{});
   builders.front().add(table.append(0, {}), rings);
@@ -109,7 +109,7 @@ TEST(OutlineTest, EdgesHaveTheSizeOfTheirLoop) {
   Rings rings = square(0, 0, 1000);
   const Rings hole = square(400, 400, 30);
   rings.add(hole[0]);
-  const auto layer = layer_of(rings);
+  const auto layer = layer_of_polygon(rings);
   const std::set<std::uint32_t> edges = edges_at(*layer, 0);
   ASSERT_EQ(edges.size(), 8u);
   for (const std::uint32_t edge : edges) {
@@ -167,7 +167,7 @@ TEST(OutlineTest, LengthsGoOnFromEdgeToEdge) {
   Joints all;
   for (unsigned seed = 0; seed < 140; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const auto layer = layer_of(random_shape(seed));
+    const auto layer = layer_of_polygon(random_shape(seed));
     EXPECT_EQ(joints_at(*layer, 0).broken, 0u);
     for (int level = 1; level <= kLastLevel; ++level) {
       const Joints joints = joints_at(*layer, static_cast<Level>(level));
@@ -179,7 +179,7 @@ TEST(OutlineTest, LengthsGoOnFromEdgeToEdge) {
 }
 
 TEST(OutlineTest, LengthsOfARoughCoastGoOnAtAllTolerances) {
-  const auto layer = layer_of(rough_coast(7));
+  const auto layer = layer_of_polygon(rough_coast(7));
   for (int level = 0; level <= kLastLevel; ++level) {
     const Joints joints = joints_at(*layer, static_cast<Level>(level));
     EXPECT_LE(joints.broken, joints.count / 200) << "level " << level << ", of " << joints.count;
@@ -188,7 +188,7 @@ TEST(OutlineTest, LengthsOfARoughCoastGoOnAtAllTolerances) {
 
 TEST(OutlineTest, LengthsAreThoseThatAreDrawnAtTheTolerancesOfZooms) {
   for (unsigned seed = 0; seed < 3; ++seed) {
-    const auto layer = layer_of(rough_coast(seed));
+    const auto layer = layer_of_polygon(rough_coast(seed));
     double first = 0;
     double last = 0;
     for (int level = 0; level <= kLastLevel; level = level == 0 ? 1 : level + kLevelsPerOctave) {

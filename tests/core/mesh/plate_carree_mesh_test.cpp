@@ -11,7 +11,7 @@
 namespace trapeze {
 namespace {
 
-constexpr Box kAll{kGridMin, kGridMin, kGridMax, kGridMax};
+constexpr Box kWholeGrid{kGridMin, kGridMin, kGridMax, kGridMax};
 constexpr double kCellsPerRow = 1 << 21;  // the world is 512 rows high
 
 struct Arrays {
@@ -65,7 +65,7 @@ TEST(PlateCarreeMeshTest, NeighboursNeitherOverlapNorGape) {
     const auto bottom = top + 1 + static_cast<std::int32_t>(random() % kGridMax);
     const Arrays made = strips(random, top, bottom, 1 + static_cast<int>(random() % 40));
     PlateCarreeMesh mesh;
-    mesh.begin(kCellsPerRow, kAll);
+    mesh.begin(kCellsPerRow, kWholeGrid);
     const TrapezoidRange all{0, static_cast<std::uint32_t>(made.trapezoids.size())};
     mesh.add(made.view(), {&all, 1});
     const double whole = (static_cast<double>(plate_carree_row(bottom)) - plate_carree_row(top)) *
@@ -86,7 +86,7 @@ TEST(PlateCarreeMeshTest, SidesAreNearTheirCurves) {
     const auto bottom = top + 1'000 + static_cast<std::int32_t>(random() % kGridMax);
     const Arrays made = strips(random, top, bottom, 2);
     PlateCarreeMesh mesh;
-    mesh.begin(kCellsPerRow, kAll);
+    mesh.begin(kCellsPerRow, kWholeGrid);
     const TrapezoidRange first{0, 1};
     mesh.add(made.view(), {&first, 1});
     const EdgeLine edge(made.vertices[2], made.vertices[3]);
@@ -117,12 +117,12 @@ TEST(PlateCarreeMeshTest, WhatIsUprightOrLowIsNotCut) {
   append_box({-1000, kGridMin, 1000, kGridMax}, made.vertices, made.edges, made.trapezoids);
   const TrapezoidRange all{0, 1};
   PlateCarreeMesh mesh;
-  mesh.begin(kCellsPerRow, kAll);
+  mesh.begin(kCellsPerRow, kWholeGrid);
   mesh.add(made.view(), {&all, 1});
   EXPECT_EQ(mesh.trapezoids().size(), 1u);
   std::mt19937 random(1);
   const Arrays low = strips(random, 5, 4'000'000, 1);
-  mesh.begin(kCellsPerRow, kAll);
+  mesh.begin(kCellsPerRow, kWholeGrid);
   mesh.add(low.view(), {&all, 1});
   EXPECT_EQ(mesh.trapezoids().size(), 1u);
 }
@@ -140,7 +140,7 @@ TEST(PlateCarreeMeshTest, OnlyWhatLiesInTheBoxIsMade) {
 
 TEST(PlateCarreeMeshTest, AWayLeadsFromEndToEnd) {
   PlateCarreeMesh mesh;
-  mesh.begin(kCellsPerRow, kAll);
+  mesh.begin(kCellsPerRow, kWholeGrid);
   const Point south{-500'000'000, 700'000'000};
   const Point north{400'000'000, -900'000'000};
   std::vector<PlateCarreeMesh::PointOnWay> up;

@@ -20,7 +20,7 @@ const std::vector<MeshTrapezoid> kTrapezoids = {{0, 3, 0, 1}, {4, 6, 2, 3}};
 const MeshView kMesh{1, kVertices, kEdges, kTrapezoids};
 const std::vector<std::uint32_t> kOwn = {0, 1};
 
-constexpr Box kAll{-200, -200, 200, 200};
+constexpr Box kBoxOfAll{-200, -200, 200, 200};
 
 std::vector<TrapezoidPart> parts_below(float share) {
   Sheet triangle;
@@ -35,14 +35,14 @@ std::vector<TrapezoidPart> parts_below(float share) {
 
 TEST(SeenEdgesTest, SidesAreSeenWhereTheInsideIs) {
   std::vector<SeenEdge> seen;
-  append_seen_sides(kMesh, kOwn, {parts_below(0), kAll}, seen);
+  append_seen_sides(kMesh, kOwn, {parts_below(0), kBoxOfAll}, seen);
   EXPECT_THAT(seen, UnorderedElementsAre(SeenEdge{0, {0, 50}, {0, 100}, 1},
                                          SeenEdge{1, {100, 50}, {100, 100}, 1}));
 }
 
 TEST(SeenEdgesTest, ThroughWhatIsNotOpaqueAShareIsSeen) {
   std::vector<SeenEdge> seen;
-  append_seen_sides(kMesh, kOwn, {parts_below(0.5F), kAll}, seen);
+  append_seen_sides(kMesh, kOwn, {parts_below(0.5F), kBoxOfAll}, seen);
   EXPECT_THAT(seen, UnorderedElementsAre(SeenEdge{0, {0, 0}, {0, 50}, 0.5F},
                                          SeenEdge{0, {0, 50}, {0, 100}, 1},
                                          SeenEdge{1, {100, 0}, {100, 50}, 0.5F},
@@ -51,15 +51,15 @@ TEST(SeenEdgesTest, ThroughWhatIsNotOpaqueAShareIsSeen) {
 
 TEST(SeenEdgesTest, SoAreHorizontalEdges) {
   std::vector<SeenEdge> seen;
-  append_seen_level_edge(kMesh, 4, {parts_below(0), kAll}, seen);
+  append_seen_level_edge(kMesh, 4, {parts_below(0), kBoxOfAll}, seen);
   EXPECT_THAT(seen, IsEmpty());
-  append_seen_level_edge(kMesh, 5, {parts_below(0), kAll}, seen);
+  append_seen_level_edge(kMesh, 5, {parts_below(0), kBoxOfAll}, seen);
   EXPECT_THAT(seen, UnorderedElementsAre(SeenEdge{5, {0, 100}, {100, 100}, 1}));
 }
 
 TEST(SeenEdgesTest, SidesOfWhatLiesOverAreNotItsOwn) {
   std::vector<SeenEdge> seen;
-  append_seen_sides(kMesh, std::vector<std::uint32_t>{0}, {parts_below(0), kAll}, seen);
+  append_seen_sides(kMesh, std::vector<std::uint32_t>{0}, {parts_below(0), kBoxOfAll}, seen);
   EXPECT_THAT(seen, UnorderedElementsAre(SeenEdge{0, {0, 50}, {0, 100}, 1}));
 }
 

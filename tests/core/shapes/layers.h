@@ -4,9 +4,20 @@
 #include <memory>
 #include <vector>
 
+#include "core/grid/grid.h"
 #include "core/layer/layer_builder.h"
 
 namespace trapeze {
+
+/// All of the grid.
+inline constexpr Box kEverywhere{kGridMin, kGridMin, kGridMax, kGridMax};
+
+/// A square from its corner with the least coordinates.
+inline Rings square(std::int32_t x, std::int32_t y, std::int32_t side) {
+  Rings rings;
+  rings.add(std::vector<Point>{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}});
+  return rings;
+}
 
 /// A layer with one feature for each polygon, in this order. The features have no attributes; their
 /// ids count from 1.

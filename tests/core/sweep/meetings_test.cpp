@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
 
 int sign(std::int64_t v) {
   return (v > 0) - (v < 0);
@@ -74,7 +74,8 @@ TEST(Meetings, AreTheSameAsOfEachSegmentWithEachOther) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     for (const std::int32_t reach : {2, 5, 12, 300, 1 << 20, kGridMax}) {
       const auto segments = random_segments(seed, 5 + static_cast<int>(seed % 40), reach);
-      ASSERT_EQ(find_meetings(segments, kAny), meetings_of_pairs(segments)) << "reach " << reach;
+      ASSERT_EQ(find_meetings(segments, kAnyNumber), meetings_of_pairs(segments))
+          << "reach " << reach;
     }
   }
 }
@@ -90,7 +91,7 @@ TEST(Meetings, SegmentsThatCoincideOrOverlapDoNotHideOthers) {
       const auto [a, b] = copies[i];
       segments.push_back({a, {3 * b.x - 2 * a.x, 3 * b.y - 2 * a.y}});
     }
-    ASSERT_EQ(find_meetings(segments, kAny), meetings_of_pairs(segments));
+    ASSERT_EQ(find_meetings(segments, kAnyNumber), meetings_of_pairs(segments));
   }
 }
 
@@ -114,7 +115,7 @@ TEST(Meetings, DiagonalsBesideEachOtherAreFewSteps) {
     diagonals.push_back({{10 * i, 0}, {10 * i + 5'000'000, 5'000'000}});
   }
   diagonals.push_back({{-2, 1'000'003}, {2'000'002, 1'000'000}});
-  EXPECT_EQ(find_meetings(diagonals, kAny)->size(), 100'001u);
+  EXPECT_EQ(find_meetings(diagonals, kAnyNumber)->size(), 100'001u);
 }
 
 TEST(Meetings, MoreThanAreWantedAreNone) {

@@ -17,7 +17,7 @@ const View kView{0, 0, kPixel, kPixels, kPixels};
 
 constexpr Rgba kRed{255, 0, 0, 255};
 constexpr Rgba kGreen{0, 255, 0, 255};
-constexpr Rgba kWhite{255, 255, 255, 255};
+constexpr Rgba kBackground{255, 255, 255, 255};
 
 std::int32_t cells(double pixels) {
   return static_cast<std::int32_t>(std::lround(pixels * kPixel));
@@ -97,7 +97,7 @@ TEST(LayerMeetingsTest, NothingShowsBetweenLayersThatShareABorder) {
     EXPECT_EQ(colour.a, 255);
     EXPECT_NEAR(colour.r + colour.g, 255, 1);
   });
-  for_each_pixel(map.picture(kWhite), [](Rgba colour) { EXPECT_EQ(colour.b, 0); });
+  for_each_pixel(map.picture(kBackground), [](Rgba colour) { EXPECT_EQ(colour.b, 0); });
 }
 
 TEST(LayerMeetingsTest, ALayerOverAnEqualOneHasNoRim) {
@@ -106,8 +106,8 @@ TEST(LayerMeetingsTest, ALayerOverAnEqualOneHasNoRim) {
   map.add({kWest}, kGreen);
   Map alone;
   alone.add({kWest}, kGreen);
-  const Picture both = map.picture(kWhite);
-  const Picture only = alone.picture(kWhite);
+  const Picture both = map.picture(kBackground);
+  const Picture only = alone.picture(kBackground);
   for (int row = 0; row < kPixels; ++row) {
     for (int column = 0; column < kPixels; ++column) {
       const Rgba expected = only.at(column, row);
@@ -124,7 +124,7 @@ TEST(LayerMeetingsTest, ALayerWithinAnotherHidesItAlongTheirCommonEdge) {
   Map map;
   map.add({kWest}, kRed);
   map.add({{{3.3, -1}, {11.9, 17}, {6, 17}, {-3, -1}}}, kGreen);
-  const Picture picture = map.picture(kWhite);
+  const Picture picture = map.picture(kBackground);
   for (int row = 0; row < kPixels; ++row) {
     const double edge = 3.3 + (row + 1.5) * 8.6 / 18;
     const Rgba colour = picture.at(static_cast<int>(edge), row);

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 
 constexpr Rgba kWhite{255, 255, 255, 255};
 constexpr Rgba kInk{0, 0, 0, 255};
-constexpr int kSize = 24;
+constexpr int kTextSize = 24;
 
 /// The file of the usual font with that name; empty if it is not installed.
 std::string font_file(std::string_view name) {
@@ -65,8 +65,8 @@ struct Drawing {
   friend bool operator==(const Drawing&, const Drawing&) = default;
 };
 
-constexpr int kHeight = 2 * kSize;
-constexpr int kBase = kSize + kSize / 2;
+constexpr int kHeight = 2 * kTextSize;
+constexpr int kBase = kTextSize + kTextSize / 2;
 
 Picture blank(int width, int height) {
   Picture picture;
@@ -81,14 +81,14 @@ class FontsTest : public ::testing::Test {
   FontsTest() { fonts_.add(dejavu()); }
 
   static Drawing drawn_by(const Fonts& fonts, std::string_view line) {
-    Picture picture = blank(std::max(1, fonts.width_of(line, kSize)), kHeight);
-    fonts.draw(line, 0, kBase, {kSize, kInk}, picture);
+    Picture picture = blank(std::max(1, fonts.width_of(line, kTextSize)), kHeight);
+    fonts.draw(line, 0, kBase, {kTextSize, kInk}, picture);
     Drawing drawing{picture.width, {}};
     for (const Rgba pixel : picture.pixels) drawing.values.push_back(255 - pixel.r);
     return drawing;
   }
   Drawing drawn(std::string_view line) const { return drawn_by(fonts_, line); }
-  int width(std::string_view line) const { return fonts_.width_of(line, kSize); }
+  int width(std::string_view line) const { return fonts_.width_of(line, kTextSize); }
 
   Fonts fonts_;
 };
@@ -209,7 +209,7 @@ TEST_F(FontsTest, DevanagariIsCombined) {
   const Drawing ki = drawn(ka + "\u093f");
   const auto foot_of_last_columns = [&](const Drawing& drawing) {
     double ink = 0;
-    for (int y = kBase - kSize / 3; y < kHeight; ++y) {
+    for (int y = kBase - kTextSize / 3; y < kHeight; ++y) {
       for (int x = drawing.width - alone.width; x < drawing.width; ++x) ink += drawing.at(x, y);
     }
     return ink;
@@ -234,7 +234,7 @@ TEST_F(FontsTest, WhatTheFirstFontLacksIsDrawnInTheNextOne) {
   const Drawing latin = drawn("Tag");
   fonts_.add(font_file("CJK"));
   EXPECT_NE(drawn(han), boxes);
-  EXPECT_EQ(width(han), 2 * kSize) << "Han characters are squares";
+  EXPECT_EQ(width(han), 2 * kTextSize) << "Han characters are squares";
   EXPECT_EQ(drawn("Tag"), latin) << "what the first font has stays with it";
 }
 
@@ -280,21 +280,21 @@ TEST_F(FontsTest, TheWorkForALineIsBoundedHoweverLongItIs) {
   EXPECT_EQ(width(longer), width(longest));
   std::string mixed;
   while (mixed.size() < 100'000) mixed += "a\u05d0\u202e\u0301\u0628\xff";
-  EXPECT_LE(width(fonts_.fitted(mixed, kSize, 500)), 500);
+  EXPECT_LE(width(fonts_.fitted(mixed, kTextSize, 500)), 500);
   Picture picture = blank(100, 30);
-  fonts_.draw(mixed, 0, 20, {kSize, kInk}, picture);
+  fonts_.draw(mixed, 0, 20, {kTextSize, kInk}, picture);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
 TEST_F(FontsTest, AFittedLineIsTheLineIfItFits) {
-  EXPECT_EQ(fonts_.fitted("Haus", kSize, width("Haus")), "Haus");
-  EXPECT_EQ(fonts_.fitted("", kSize, 0), "");
+  EXPECT_EQ(fonts_.fitted("Haus", kTextSize, width("Haus")), "Haus");
+  EXPECT_EQ(fonts_.fitted("", kTextSize, 0), "");
 }
 
 TEST_F(FontsTest, AFittedLineIsTheLongestBeginningWithAnEllipsis) {
   const std::string line = "Gr\u00f6\u00dfenverh\u00e4ltnisse";
   for (int most = width("\u2026"); most < width(line); most += 7) {
-    const std::string fitted = fonts_.fitted(line, kSize, most);
+    const std::string fitted = fonts_.fitted(line, kTextSize, most);
     EXPECT_LE(width(fitted), most);
     ASSERT_TRUE(fitted.ends_with("\u2026")) << fitted;
     const std::string begin = fitted.substr(0, fitted.size() - std::string("\u2026").size());
@@ -309,21 +309,21 @@ TEST_F(FontsTest, AFittedLineIsTheLongestBeginningWithAnEllipsis) {
 
 TEST_F(FontsTest, WhatLiesOutsideOfThePictureIsLeftOut) {
   Picture picture = blank(8, 8);
-  fonts_.draw("WWWW", -15, 12, {kSize, kInk}, picture);
-  fonts_.draw("W", 100, 100, {kSize, kInk}, picture);
-  fonts_.draw("W", -100, -100, {kSize, kInk}, picture);
+  fonts_.draw("WWWW", -15, 12, {kTextSize, kInk}, picture);
+  fonts_.draw("W", 100, 100, {kTextSize, kInk}, picture);
+  fonts_.draw("W", -100, -100, {kTextSize, kInk}, picture);
   Picture large = blank(200, 60);
-  fonts_.draw("WWWW", 5, 32, {kSize, kInk}, large);
+  fonts_.draw("WWWW", 5, 32, {kTextSize, kInk}, large);
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 8; ++x) EXPECT_EQ(picture.at(x, y), large.at(x + 20, y + 20));
   }
 }
 
 TEST_F(FontsTest, TextIsLaidOverWhatIsThereInItsColour) {
-  Picture picture = blank(kSize, kHeight);
+  Picture picture = blank(kTextSize, kHeight);
   std::ranges::fill(picture.pixels, Rgba{0, 0, 255, 255});
-  fonts_.draw("\u2588", 0, kBase, {kSize, {255, 0, 0, 128}}, picture);  // full block
-  EXPECT_EQ(picture.at(kSize / 3, kBase - 5), (Rgba{128, 0, 127, 255}));
+  fonts_.draw("\u2588", 0, kBase, {kTextSize, {255, 0, 0, 128}}, picture);  // full block
+  EXPECT_EQ(picture.at(kTextSize / 3, kBase - 5), (Rgba{128, 0, 127, 255}));
 }
 
 /// Lines in every script with its own rules for combining or ordering, where a font is installed.
@@ -343,7 +343,8 @@ TEST_F(FontsTest, AMaskHasTheLettersOfTheLineInItsMiddle) {
   for (const std::string& line : lines_of_scripts()) {
     const Drawing drawing = drawn_by(fonts, line);
     const int side = drawing.width + 40 + drawing.width % 2;
-    const TextMask mask = fonts.mask_of(std::vector<std::string>{line}, kSize, kSize, 2, side, 80);
+    const TextMask mask =
+        fonts.mask_of(std::vector<std::string>{line}, kTextSize, kTextSize, 2, side, 80);
     ASSERT_EQ(mask.width, side);
     long letters = 0;
     double moment = 0;
@@ -361,8 +362,10 @@ TEST_F(FontsTest, AMaskHasTheLettersOfTheLineInItsMiddle) {
 }
 
 TEST_F(FontsTest, TheHaloReachesAsFarAsItIsWide) {
-  const TextMask thin = fonts_.mask_of(std::vector<std::string>{"H"}, kSize, kSize, 0, 60, 60);
-  const TextMask wide = fonts_.mask_of(std::vector<std::string>{"H"}, kSize, kSize, 4, 60, 60);
+  const TextMask thin =
+      fonts_.mask_of(std::vector<std::string>{"H"}, kTextSize, kTextSize, 0, 60, 60);
+  const TextMask wide =
+      fonts_.mask_of(std::vector<std::string>{"H"}, kTextSize, kTextSize, 4, 60, 60);
   EXPECT_EQ(thin.letters, wide.letters);
   EXPECT_EQ(thin.halo, thin.letters);
   const auto near_letter = [&thin](int column, int row, int reach) {
@@ -391,8 +394,8 @@ TEST_F(FontsTest, AnExtentIsTheWidthOfTheLine) {
   Fonts fonts;
   for (const std::string& file : usual_fonts()) fonts.add(file);
   for (const std::string& line : lines_of_scripts()) {
-    const double pixels = fonts.extent_of(line).width * kSize;
-    EXPECT_NEAR(pixels, fonts.width_of(line, kSize), 0.05 * pixels + 1) << line;
+    const double pixels = fonts.extent_of(line).width * kTextSize;
+    EXPECT_NEAR(pixels, fonts.width_of(line, kTextSize), 0.05 * pixels + 1) << line;
   }
   EXPECT_GT(fonts.extent_of("\u0e17\u0e35\u0e48").height, fonts.extent_of("a").height);
   EXPECT_EQ(fonts.extent_of("").width, 0);
@@ -400,7 +403,7 @@ TEST_F(FontsTest, AnExtentIsTheWidthOfTheLine) {
 
 TEST_F(FontsTest, AMaskCutsOffWhatReachesOutOfIt) {
   const TextMask mask =
-      fonts_.mask_of(std::vector<std::string>{"WWWWWWWW", "W"}, kSize, kSize, 3, 20, 10);
+      fonts_.mask_of(std::vector<std::string>{"WWWWWWWW", "W"}, kTextSize, kTextSize, 3, 20, 10);
   EXPECT_EQ(mask.letters.size(), 200u);
   EXPECT_TRUE(std::ranges::any_of(mask.letters, [](auto value) { return value > 0; }));
 }

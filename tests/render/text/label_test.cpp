@@ -9,7 +9,7 @@
 namespace trapeze {
 namespace {
 
-constexpr Rgba kWhite{255, 255, 255, 255};
+constexpr Rgba kPlate{255, 255, 255, 255};
 constexpr Rgba kBlack{0, 0, 0, 255};
 constexpr TextStyle kStyle{12, kBlack};
 
@@ -31,10 +31,10 @@ class LabelTest : public ::testing::Test {
 TEST_F(LabelTest, BlackTextIsReadableOnBlackGround) {
   Picture picture = black_picture(64, 32);
   draw_label("17", 3, 3, kStyle, fonts_, picture);
-  EXPECT_EQ(picture.at(3, 3), kWhite) << "the plate";
+  EXPECT_EQ(picture.at(3, 3), kPlate) << "the plate";
   EXPECT_EQ(picture.at(2, 3), kBlack) << "beside it";
   const int right = 3 + fonts_.width_of("17", kStyle.size) + 4;
-  EXPECT_EQ(picture.at(right - 1, 3), kWhite);
+  EXPECT_EQ(picture.at(right - 1, 3), kPlate);
   EXPECT_EQ(picture.at(right, 3), kBlack);
   int dark_pixels = 0;
   for (int y = 3; y < 18; ++y) {
@@ -47,7 +47,7 @@ TEST_F(LabelTest, ALabelLongerThanThePictureIsCutOff) {
   for (const int size : {1, 2, 7, 30}) {
     Picture picture = black_picture(size, size);
     draw_label("22/4194303/4194303 4x", 0, 0, kStyle, fonts_, picture);
-    EXPECT_EQ(picture.at(0, 0), kWhite);
+    EXPECT_EQ(picture.at(0, 0), kPlate);
   }
 }
 

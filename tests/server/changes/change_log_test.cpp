@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 using Generation = std::shared_ptr<const Dataset>;
 using State = ChangeLog::Answer::State;
 
-constexpr ZoomRange kZooms{0, 6};
+constexpr ZoomRange kLoggedZooms{0, 6};
 
 bool holds_soon(const std::function<bool()>& condition) {
   const auto end = std::chrono::steady_clock::now() + 20s;
@@ -71,7 +71,7 @@ class ChangeLogTest : public ::testing::Test {
 
 TEST_F(ChangeLogTest, ASlowCommandIsToldOfEverythingThatChangesMeanwhile) {
   ChangeLog::Options options;
-  options.zooms = kZooms;
+  options.zooms = kLoggedZooms;
   options.command =
       "touch " + path("began") + "; until [ -e " + path("go") +
       " ]; do sleep 0.01; done; { echo from $TRAPEZE_SINCE $TRAPEZE_GENERATION; cat; } >> " +
@@ -119,7 +119,7 @@ TEST_F(ChangeLogTest, ASlowCommandIsToldOfEverythingThatChangesMeanwhile) {
 
 TEST_F(ChangeLogTest, CommandsAreEndedAndNoMoreAreStarted) {
   ChangeLog::Options options;
-  options.zooms = kZooms;
+  options.zooms = kLoggedZooms;
   options.command = "echo >> " + path("began") + "; exec sleep 600";
   ChangeLog log(options);
   const Generation first = land_.load();
@@ -133,7 +133,7 @@ TEST_F(ChangeLogTest, CommandsAreEndedAndNoMoreAreStarted) {
 
 TEST_F(ChangeLogTest, ALayerThatIsShownOtherwiseMayLookDifferentEverywhere) {
   ChangeLog::Options options;
-  options.zooms = kZooms;
+  options.zooms = kLoggedZooms;
   ChangeLog log(options);
   const Generation first = land_.load();
   const auto note_with = [&](const std::function<void(LayerConfig&)>& change) {

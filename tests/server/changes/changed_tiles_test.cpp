@@ -24,7 +24,7 @@ namespace {
 using testing::EditedLand;
 using Tiles = std::set<std::tuple<int, std::uint32_t, std::uint32_t>>;
 
-constexpr ZoomRange kZooms{0, 8};
+constexpr ZoomRange kServedZooms{0, 8};
 
 Tiles set_of(const std::vector<TileId>& tiles) {
   Tiles set;
@@ -37,7 +37,7 @@ ChangeRequest request_of(const std::string& style, Certainty certainty) {
   ChangeRequest request;
   request.tile.layers = {"land"};
   request.tile.style = testing::style_of(style);
-  request.zooms = kZooms;
+  request.zooms = kServedZooms;
   request.certainty = certainty;
   return request;
 }
@@ -58,7 +58,7 @@ class Drawn {
   Tiles different(const std::shared_ptr<const Dataset>& before,
                   const std::shared_ptr<const Dataset>& after) {
     Tiles tiles;
-    for (int z = kZooms.first; z <= kZooms.last; ++z) {
+    for (int z = kServedZooms.first; z <= kServedZooms.last; ++z) {
       const double count = 1 << z;
       const auto tile_at = [count](double share) {
         return static_cast<std::uint32_t>(std::clamp(std::floor(share * count), 0.0, count - 1));

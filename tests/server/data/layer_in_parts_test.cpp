@@ -121,9 +121,9 @@ std::shared_ptr<const Dataset> load(const std::string& file, CoverageMode covera
 }
 
 /// Draws the whole layer and the layer in parts, and measures the difference.
-class Comparison {
+class PartsComparison {
  public:
-  Comparison(std::shared_ptr<const Dataset> whole, std::shared_ptr<const Dataset> parts)
+  PartsComparison(std::shared_ptr<const Dataset> whole, std::shared_ptr<const Dataset> parts)
       : whole_(std::move(whole)),
         parts_(std::move(parts)),
         painter_(std::make_unique<SoftwareRenderer>()) {}
@@ -251,7 +251,7 @@ TEST_P(LayerInParts, DrawsTheBytesOfTheWholeOneUnderTheSameTags) {
     const TemporaryFolder folder;
     const auto parts = load(prepare_parts(folder, source_, GetParam(), coverage, false), coverage);
     ASSERT_NE(parts->layers()[0].parts, nullptr);
-    Comparison comparison(load(source_, coverage), parts);
+    PartsComparison comparison(load(source_, coverage), parts);
     for (const char* query : kExactQueries) comparison.expect_equal(query);
   }
 }
@@ -262,7 +262,7 @@ TEST_P(LayerInParts, LosesNoDustWhereAPixelHasSomeOfSeveralParts) {
     const TemporaryFolder folder;
     const auto parts = load(
         prepare_parts(folder, source_, GetParam(), kUsualCoverage, has_overview), kUsualCoverage);
-    const auto distance = Comparison(whole, parts).distance("");
+    const auto distance = PartsComparison(whole, parts).distance("");
     EXPECT_GT(distance.ink, 100);
     EXPECT_LT(distance.missing_ink, 0.01 * distance.ink) << has_overview;
     EXPECT_LT(static_cast<double>(distance.far), 0.02 * static_cast<double>(distance.pixels))
@@ -337,7 +337,7 @@ TEST_F(LayerInThreeParts, SaysFromTheFirstTileOnThatAPartIsDamaged) {
 }
 
 TEST_F(LayerInThreeParts, DrawsPolygonsOfTheOverviewAsThoseOfTheWhole) {
-  Comparison comparison(load(source_, kUsualCoverage), parts_);
+  PartsComparison comparison(load(source_, kUsualCoverage), parts_);
   comparison.expect_equal("small=drop");
   comparison.expect_equal("small=drop&stroke=black&fill-opacity=0.3&simplify=3");
 }
@@ -445,7 +445,7 @@ TEST_P(RealLayerInParts, DrawsTheBytesOfTheWholeOneUnderTheSameTags) {
   const std::string source = (std::filesystem::path(data) / GetParam()).string();
   const TemporaryFolder folder;
   const auto parts = load(prepare_parts(folder, source, 5, kUsualCoverage, true), kUsualCoverage);
-  Comparison comparison(load(source, kUsualCoverage), parts);
+  PartsComparison comparison(load(source, kUsualCoverage), parts);
   comparison.expect_equal("small=drop&fill-opacity=0.6&stroke=black");
   const auto distance = comparison.distance("");
   EXPECT_LT(distance.missing_ink, 0.01 * distance.ink);

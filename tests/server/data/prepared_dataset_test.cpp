@@ -39,9 +39,9 @@ std::shared_ptr<const Dataset> load(const std::string& file) {
 }
 
 /// Paints the tiles of both datasets and compares pictures and entity tags.
-class Comparison {
+class PreparedComparison {
  public:
-  Comparison(std::shared_ptr<const Dataset> built, std::shared_ptr<const Dataset> prepared)
+  PreparedComparison(std::shared_ptr<const Dataset> built, std::shared_ptr<const Dataset> prepared)
       : built_(std::move(built)),
         prepared_(std::move(prepared)),
         painter_(std::move(make_renderers({RendererKind::software, {}}, 1).renderers.front())) {}
@@ -93,7 +93,7 @@ TEST(PreparedDatasetTest, DrawsTheBytesOfTheBuiltOneUnderTheSameTags) {
     const auto built = load(fixture(name));
     const auto prepared = load(prepare(folder, fixture(name)));
     EXPECT_EQ(prepared->generation(), built->generation());
-    Comparison comparison(built, prepared);
+    PreparedComparison comparison(built, prepared);
     for (const char* query : kQueries) comparison.expect_equal_at_all_zooms(query);
   }
 }
@@ -141,7 +141,7 @@ TEST_P(RealPreparedDatasetTest, DrawsTheBytesOfTheBuiltOneUnderTheSameTags) {
   const auto built = load(file);
   const auto prepared = load(prepare(folder, file));
   EXPECT_EQ(prepared->generation(), built->generation());
-  Comparison comparison(built, prepared);
+  PreparedComparison comparison(built, prepared);
   for (const char* query : kQueries) comparison.expect_equal_at_all_zooms(query);
 }
 

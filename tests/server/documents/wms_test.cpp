@@ -19,6 +19,7 @@
 namespace trapeze {
 namespace {
 
+using testing::changed;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -34,14 +35,7 @@ const std::string kOldMap = std::string(
                                 "STYLES=&SRS=EPSG:3857&WIDTH=256&HEIGHT=256&FORMAT=image/png&") +
                             kBox;
 
-/// The target with one part replaced.
-std::string changed(std::string target, const std::string& from, const std::string& to) {
-  const std::size_t at = target.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return target.replace(at, from.size(), to);
-}
-
-const std::string kInfo =
+const std::string kMapInfo =
     changed(kMap, "GetMap", "GetFeatureInfo") + "&QUERY_LAYERS=rings&I=250&J=250&INFO_FORMAT=";
 
 class WmsTest : public ::testing::Test {
@@ -207,16 +201,16 @@ TEST_F(WmsTest, WhatTheConfigurationSaysIsEscaped) {
 }
 
 TEST_F(WmsTest, FeaturesUnderAPixelAreTold) {
-  const auto json = sample_.get(kInfo + "application/geo%2Bjson");
+  const auto json = sample_.get(kMapInfo + "application/geo%2Bjson");
   ASSERT_EQ(json.status, 200) << *json.body;
   EXPECT_EQ(json.header("Content-Type"), "application/geo+json");
   EXPECT_EQ(nlohmann::json::parse(*json.body)["features"][0]["layer"], "rings");
-  EXPECT_THAT(*sample_.get(kInfo + "text/plain").body, HasSubstr("layer = rings"));
-  EXPECT_THAT(*sample_.get(kInfo + "text/html").body, HasSubstr("<td>rings</td>"));
+  EXPECT_THAT(*sample_.get(kMapInfo + "text/plain").body, HasSubstr("layer = rings"));
+  EXPECT_THAT(*sample_.get(kMapInfo + "text/html").body, HasSubstr("<td>rings</td>"));
   const auto old = sample_.get(changed(kOldMap, "GetMap", "GetFeatureInfo") +
                                "&QUERY_LAYERS=rings&X=250&Y=250&INFO_FORMAT=text/plain");
   EXPECT_THAT(*old.body, HasSubstr("layer = rings"));
-  const auto outside = sample_.get(changed(kInfo, "I=250&J=250", "I=0&J=0") + "text/plain");
+  const auto outside = sample_.get(changed(kMapInfo, "I=250&J=250", "I=0&J=0") + "text/plain");
   EXPECT_THAT(*outside.body, Not(HasSubstr("rings")));
 }
 
@@ -232,7 +226,7 @@ TEST_F(WmsTest, FeaturesAreAsManyOfALayerAsAskedFor) {
       "rings.geojson", R"({"type": "FeatureCollection", "features": [)" + features + "]}");
   sample_.data().set(Dataset::load(layers_of_files({file})));
   const auto count = [this](const std::string& more) {
-    const auto response = sample_.get(kInfo + "application/json" + more);
+    const auto response = sample_.get(kMapInfo + "application/json" + more);
     return nlohmann::json::parse(*response.body)["features"].size();
   };
   EXPECT_EQ(count(""), 1u);
@@ -280,12 +274,12 @@ TEST_F(WmsTest, TellsWhatIsWrongInTheWordsOfItsVersion) {
       {kMap + "&SLD=http://other.example/a.sld", "OperationNotSupported", "SLD"},
       {kMap + "&WIDTH=256", "InvalidParameterValue", "WIDTH"},
       {kMap + "&fill=cake", "InvalidParameterValue", "fill"},
-      {kInfo + "image/png", "InvalidFormat", "INFO_FORMAT"},
-      {changed(kInfo, "I=250", "I=256") + "text/plain", "InvalidPoint", "I"},
-      {changed(kInfo, "J=250", "J=-1") + "text/plain", "InvalidPoint", "J"},
-      {changed(kInfo, "QUERY_LAYERS=rings", "QUERY_LAYERS=west") + "text/plain", "LayerNotDefined",
-       "QUERY_LAYERS"},
-      {kInfo + "text/plain&FEATURE_COUNT=0", "InvalidParameterValue", "FEATURE_COUNT"},
+      {kMapInfo + "image/png", "InvalidFormat", "INFO_FORMAT"},
+      {changed(kMapInfo, "I=250", "I=256") + "text/plain", "InvalidPoint", "I"},
+      {changed(kMapInfo, "J=250", "J=-1") + "text/plain", "InvalidPoint", "J"},
+      {changed(kMapInfo, "QUERY_LAYERS=rings", "QUERY_LAYERS=west") + "text/plain",
+       "LayerNotDefined", "QUERY_LAYERS"},
+      {kMapInfo + "text/plain&FEATURE_COUNT=0", "InvalidParameterValue", "FEATURE_COUNT"},
       {"/wms?service=WMS&request=GetLegendGraphic&layer=cake", "LayerNotDefined", "LAYER"},
       {"/wms?service=WMS&request=GetLegendGraphic&layer=rings&style=cake", "StyleNotDefined",
        "STYLE"},

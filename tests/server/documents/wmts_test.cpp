@@ -12,6 +12,7 @@
 namespace trapeze {
 namespace {
 
+using testing::changed;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -19,12 +20,7 @@ const std::string kTile =
     "/wmts?SERVICE=WMTS&REQUEST=GetTile&VERSION=1.0.0&LAYER=rings&STYLE=default"
     "&FORMAT=image/png&TILEMATRIXSET=WebMercatorQuad&TILEMATRIX=3&TILEROW=2&TILECOL=5";
 
-/// The target with one part replaced.
-std::string changed(std::string target, const std::string& from, const std::string& to) {
-  return target.replace(target.find(from), from.size(), to);
-}
-
-const std::string kInfo =
+const std::string kTileInfo =
     changed(kTile, "GetTile", "GetFeatureInfo") + "&INFOFORMAT=application/geo%2Bjson&I=128&J=1";
 
 class WmtsTest : public ::testing::Test {
@@ -151,11 +147,11 @@ TEST_F(WmtsTest, FeaturesAreTheSameByKeysAndValuesAndInEveryFormat) {
   for (const auto& [format, type] : std::vector<std::pair<std::string, std::string>>{
            {"application/geo%2Bjson", "application/geo+json"},
            {"application/json", "application/json"}}) {
-    const auto response = sample_.get(changed(kInfo, "application/geo%2Bjson", format));
+    const auto response = sample_.get(changed(kTileInfo, "application/geo%2Bjson", format));
     EXPECT_EQ(response.header("Content-Type"), type);
     EXPECT_EQ(*response.body, json);
   }
-  const auto text = sample_.get(changed(kInfo, "application/geo%2Bjson", "text/plain"));
+  const auto text = sample_.get(changed(kTileInfo, "application/geo%2Bjson", "text/plain"));
   EXPECT_EQ(text.header("Content-Type"), "text/plain; charset=utf-8");
   EXPECT_EQ(text.body->substr(0, name.size() + 1), name + "\n");
   EXPECT_THAT(*text.body, HasSubstr("  rank = 1\n"));
@@ -251,7 +247,7 @@ TEST_F(WmtsTest, PixelsAndFormatsOfFeaturesAreChecked) {
     const std::size_t at = response.body->find(begin) + begin.size();
     return response.body->substr(at, response.body->find('>', at) - at);
   };
-  const std::string& info = kInfo;
+  const std::string& info = kTileInfo;
   EXPECT_EQ(sample_.get(info).status, 200);
   EXPECT_EQ(exception(changed(info, "&I=128", "")), "MissingParameterValue\" locator=\"I\"");
   EXPECT_EQ(exception(changed(info, "&J=1", "")), "MissingParameterValue\" locator=\"J\"");

@@ -8,7 +8,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -28,11 +27,6 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using testing::PmtilesReader;
 using testing::seed_request;
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 ArchiveDescription description(ZoomRange zooms) {
   ArchiveDescription d;

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -30,11 +28,6 @@ struct Sample {
     return {request, response, std::chrono::duration<double>(0.0015), 11, referer, agent};
   }
 };
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 TEST(AccessLineTest, TextIsTheCombinedFormatAndMore) {
   EXPECT_THAT(access_line(Sample().answered(), LogFormat::text),

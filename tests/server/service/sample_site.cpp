@@ -1,6 +1,7 @@
 #include "tests/server/service/sample_site.h"
 
 #include <future>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,12 @@ std::string fixture(const std::string& name) {
 
 StyleQuery style_of(const std::string& query) {
   return *StyleQuery::parse(decode_query(query).value(), {});
+}
+
+std::string changed(std::string target, const std::string& from, const std::string& to) {
+  const std::size_t at = target.find(from);
+  if (at == std::string::npos) throw std::invalid_argument(from + " is not in " + target);
+  return target.replace(at, from.size(), to);
 }
 
 std::shared_ptr<const Dataset> sample_dataset() {

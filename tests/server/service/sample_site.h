@@ -17,6 +17,9 @@ std::string fixture(const std::string& name);
 /// A style for all layers, parsed from a query.
 StyleQuery style_of(const std::string& query);
 
+/// The target with one part replaced; throws if it lacks that part.
+std::string changed(std::string target, const std::string& from, const std::string& to);
+
 /// Two layers. In a tile of zoom 0, "rings" covers pixels 64 to 192 in both directions except the
 /// hole from 96 to 160, which contains an island from 112 to 144; "west" covers columns 0 to 128.
 std::shared_ptr<const Dataset> sample_dataset();

@@ -29,7 +29,7 @@ FeatureTable places() {
   return table;
 }
 
-std::string canonical(std::string_view text) {
+std::string canonical_filter(std::string_view text) {
   const auto parsed = Filter::parse(text);
   if (const auto* mistake = std::get_if<1>(&parsed)) return "mistake: " + mistake->what;
   return std::get<0>(parsed)->text();
@@ -114,24 +114,25 @@ TEST(FilterTest, AndBindsTighterThanOrAndNotTighterStill) {
 }
 
 TEST(FilterTest, EqualFiltersHaveOneText) {
-  const std::string text = canonical("a = 1 AND b IN (2, 1) AND NOT c LIKE 'x'");
+  const std::string text = canonical_filter("a = 1 AND b IN (2, 1) AND NOT c LIKE 'x'");
   for (const char* same : {"b in(1,2,2)and a=1 and c not like 'x'",
                            "(a = 1.0) AND ((b IN (2,1)) AND NOT (c LIKE 'x'))",
                            "NOT c LIKE 'x' AND a=1 AND 1 = a AND b IN (1,2)",
                            " a=+1\tAND\n\"b\" IN (2,1) AND NOT NOT NOT c LIKE 'x'"}) {
-    EXPECT_EQ(canonical(same), text) << same;
+    EXPECT_EQ(canonical_filter(same), text) << same;
   }
-  EXPECT_NE(canonical("a=1 OR b=1"), canonical("a=1 AND b=1"));
-  EXPECT_NE(canonical("a='1'"), canonical("a=1"));
-  EXPECT_NE(canonical("A=1"), canonical("a=1")) << "names of properties keep their case";
+  EXPECT_NE(canonical_filter("a=1 OR b=1"), canonical_filter("a=1 AND b=1"));
+  EXPECT_NE(canonical_filter("a='1'"), canonical_filter("a=1"));
+  EXPECT_NE(canonical_filter("A=1"), canonical_filter("a=1"))
+      << "names of properties keep their case";
 }
 
 TEST(FilterTest, TheTextReadsBackAsItself) {
   for (const char* filter :
        {"a=1", "\"a b\"='it''s'", "\"and\" IS NOT NULL", "NOT (a=1 OR b=2)", "a=1 AND (b=2 OR c=3)",
         "a BETWEEN 1e300 AND 0.1", "a = -0", "a<>TRUE", "\"x\"\"y\" LIKE '%\\%'", "5 < a"}) {
-    const std::string text = canonical(filter);
-    EXPECT_EQ(canonical(text), text) << filter;
+    const std::string text = canonical_filter(filter);
+    EXPECT_EQ(canonical_filter(text), text) << filter;
     EXPECT_THAT(text, ::testing::Not(HasSubstr("mistake"))) << filter;
   }
 }
@@ -139,8 +140,8 @@ TEST(FilterTest, TheTextReadsBackAsItself) {
 TEST(FilterTest, NumbersBeyondExactDoublesKeepTheirText) {
   // From 2^53 to 10^16 a whole double is written like an integer, and integers sort before doubles.
   const std::string text =
-      canonical("n IN (.4,9223372039223372.37,1e17,-9223372036854775808.0,1e30)");
-  EXPECT_EQ(canonical(text), text);
+      canonical_filter("n IN (.4,9223372039223372.37,1e17,-9223372036854775808.0,1e30)");
+  EXPECT_EQ(canonical_filter(text), text);
   EXPECT_EQ(text, "n IN (-9223372036854775808,9223372039223372,100000000000000000,0.4,1e+30)");
 }
 
@@ -228,7 +229,7 @@ TEST(FilterTest, WhateverIsWrittenIsAFilterOrAMistake) {
     if (parsed.index() != 0) continue;
     ++filters;
     const std::string canonical_text = std::get<0>(parsed)->text();
-    ASSERT_EQ(canonical(canonical_text), canonical_text) << text;
+    ASSERT_EQ(canonical_filter(canonical_text), canonical_text) << text;
   }
   EXPECT_GT(filters, 100);
 }

@@ -14,11 +14,10 @@
 namespace trapeze {
 namespace {
 
-constexpr std::int32_t kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
-
-std::int32_t cell(double pixels) {
-  return static_cast<std::int32_t>(kGridMin + pixels * kPixel);
-}
+using testing::box;
+using testing::cell;
+using testing::expect_near;
+using testing::kPixel;
 
 Rings polygon(const std::vector<std::pair<double, double>>& pixels) {
   Rings rings;
@@ -26,10 +25,6 @@ Rings polygon(const std::vector<std::pair<double, double>>& pixels) {
   for (const auto& [x, y] : pixels) ring.push_back({cell(x), cell(y)});
   rings.add(ring);
   return rings;
-}
-
-Rings box(double west, double north, double east, double south) {
-  return polygon({{west, north}, {east, north}, {east, south}, {west, south}});
 }
 
 /// Kinds and rings of features. Pixels of the tile of zoom 0, by id:
@@ -40,7 +35,7 @@ Rings box(double west, double north, double east, double south) {
 ///   6  lake, over both: columns 80 to 112, rows 176 to 208
 ///   7  field: a triangle with a slanted western side
 ///   8  wood: the southern part of 7, with the same sides
-std::vector<std::pair<std::string, Rings>> plots() {
+std::vector<std::pair<std::string, Rings>> overlapping_plots() {
   std::vector<std::pair<std::string, Rings>> plots;
   const auto add = [&plots](const char* kind, const Rings& rings) {
     plots.emplace_back(kind, rings);
@@ -103,15 +98,8 @@ class OverlapPicturesTest : public ::testing::Test {
 
   testing::SampleSite site_{false};
 
-  void SetUp() override { site_.data().set(layer_of(plots())); }
+  void SetUp() override { site_.data().set(layer_of(overlapping_plots())); }
 };
-
-void expect_near(Rgba actual, Rgba expected, int tolerance) {
-  EXPECT_NEAR(actual.a, expected.a, tolerance);
-  EXPECT_NEAR(actual.r, expected.r, tolerance);
-  EXPECT_NEAR(actual.g, expected.g, tolerance);
-  EXPECT_NEAR(actual.b, expected.b, tolerance);
-}
 
 TEST_F(OverlapPicturesTest, AreTheSameWithoutTheTestOfTopology) {
   for (const std::string& style : {kClasses, kClasses + "&stroke=000", kHalfOpaque}) {

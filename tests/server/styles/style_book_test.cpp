@@ -165,24 +165,25 @@ TEST(StyleDocumentTest, MoreMembersThanAnyStyleHasAreRefusedAtOnce) {
   }
 }
 
-std::string canonical(std::string_view json) {
+std::string canonical_document(std::string_view json) {
   const auto style = parse_style_document(json);
   if (!style) return "problem: " + style.problem().detail;
   return style->canonical_text();
 }
 
 TEST(StyleDocumentTest, HasTheParametersByTheirNames) {
-  EXPECT_EQ(canonical(R"({"fill": "#ff0000", "stroke-width": 2, "stroke-dasharray": [4, 2.5]})"),
-            "fill=ff0000ff&stroke-dasharray=4%2C2.5&stroke-width=2");
-  EXPECT_EQ(canonical(R"({"layers": {"water": {"fill": "navy"}}, "land.fill": "lime"})"),
+  EXPECT_EQ(
+      canonical_document(R"({"fill": "#ff0000", "stroke-width": 2, "stroke-dasharray": [4, 2.5]})"),
+      "fill=ff0000ff&stroke-dasharray=4%2C2.5&stroke-width=2");
+  EXPECT_EQ(canonical_document(R"({"layers": {"water": {"fill": "navy"}}, "land.fill": "lime"})"),
             "land.fill=00ff00ff&water.fill=000080ff");
-  EXPECT_EQ(canonical(R"({"color-by": "A3", "classes": {"it's": "red", "*": "blue"}})"),
+  EXPECT_EQ(canonical_document(R"({"color-by": "A3", "classes": {"it's": "red", "*": "blue"}})"),
             "classes=%27it%27%27s%27%3Aff0000ff%2C%2A%3A0000ffff&color-by=A3");
-  EXPECT_EQ(canonical("{}"), "");
+  EXPECT_EQ(canonical_document("{}"), "");
 }
 
 TEST(StyleDocumentTest, UnderstandsThePaintOfMapLibre) {
-  EXPECT_EQ(canonical(R"({"id": "land", "type": "fill", "source": "x", "source-layer": "y",
+  EXPECT_EQ(canonical_document(R"({"id": "land", "type": "fill", "source": "x", "source-layer": "y",
                           "paint": {"fill-color": "#0f0", "fill-opacity": 0.5,
                                     "fill-outline-color": "black", "fill-antialias": true}})"),
             "fill=00ff00ff&fill-opacity=0.5&stroke=000000ff");
@@ -208,7 +209,7 @@ TEST(StyleDocumentTest, NothingIsLeftOutInSilence) {
            {R"({"filter": "a = 'b\t'"})", "at byte 7 there is a control character"},
            {R"({"water.background": "red"})", "for one layer"},
            {R"({"fill": "red", "paint": {"fill-color": "blue"}})", "more than once"}}) {
-    EXPECT_THAT(canonical(json), HasSubstr(says)) << json;
+    EXPECT_THAT(canonical_document(json), HasSubstr(says)) << json;
   }
 }
 
@@ -217,7 +218,7 @@ TEST(StyleDocumentTest, IsReadBackAsTheSameStyle) {
        {"fill=red&opacity=0.25", "stroke-dasharray=1,2&ids=3,1&filter=a%3D'b'",
         "color-by=k&classes='x,y':red,null:blue,*:lime", "breaks=1,2.5&ramp=Reds&color-by=k"}) {
     const StyleQuery style = testing::style_of(query);
-    EXPECT_EQ(canonical(style_document(style)), style.canonical_text());
+    EXPECT_EQ(canonical_document(style_document(style)), style.canonical_text());
   }
 }
 

@@ -14,7 +14,7 @@ Result<StyleQuery> parse(std::string_view query) {
   return StyleQuery::parse(decode_query(query).value(), kLayers);
 }
 
-std::string canonical(std::string_view query) {
+std::string canonical_query(std::string_view query) {
   const auto parsed = parse(query);
   if (!parsed) return "problem: " + parsed.problem().detail;
   return parsed->canonical_text();
@@ -28,27 +28,28 @@ Problem problem_of(std::string_view query) {
 }
 
 TEST(StyleParametersTest, EqualStylesHaveEqualText) {
-  const std::string text = canonical("background=white&fill=red");
+  const std::string text = canonical_query("background=white&fill=red");
   for (const char* query : {"fill=red&background=white", "fill=f00&background=fff",
                             "fill=FF0000&background=WHITE", "fill=%23ff0000ff&background=ffffffff",
                             "background=rgb(255,255,255)&&fill=rgba(255,+0,+0,+1)",
                             "_=1&fill=red&background=white&_=2"}) {
-    EXPECT_EQ(canonical(query), text) << query;
+    EXPECT_EQ(canonical_query(query), text) << query;
   }
-  EXPECT_EQ(canonical("fill-opacity=0.50"), canonical("fill-opacity=5e-1"));
-  EXPECT_EQ(canonical("fill-opacity=-0"), canonical("fill-opacity=0"));
+  EXPECT_EQ(canonical_query("fill-opacity=0.50"), canonical_query("fill-opacity=5e-1"));
+  EXPECT_EQ(canonical_query("fill-opacity=-0"), canonical_query("fill-opacity=0"));
 }
 
 TEST(StyleParametersTest, DifferentStylesHaveDifferentText) {
-  EXPECT_NE(canonical("fill=red"), canonical("fill=fe0000"));
-  EXPECT_NE(canonical("fill=red"), canonical("background=red"));
-  EXPECT_NE(canonical("fill=red"), canonical("roads.fill=red"));
-  EXPECT_NE(canonical("fill-opacity=0.5"), canonical("fill-opacity=0.51"));
+  EXPECT_NE(canonical_query("fill=red"), canonical_query("fill=fe0000"));
+  EXPECT_NE(canonical_query("fill=red"), canonical_query("background=red"));
+  EXPECT_NE(canonical_query("fill=red"), canonical_query("roads.fill=red"));
+  EXPECT_NE(canonical_query("fill-opacity=0.5"), canonical_query("fill-opacity=0.51"));
 }
 
 TEST(StyleParametersTest, CanonicalTextReadsBackAsItself) {
-  const std::string text = canonical("lakes.fill=teal&fill-opacity=0.1&roads.fill-opacity=.25");
-  EXPECT_EQ(canonical(text), text);
+  const std::string text =
+      canonical_query("lakes.fill=teal&fill-opacity=0.1&roads.fill-opacity=.25");
+  EXPECT_EQ(canonical_query(text), text);
   EXPECT_EQ(text, "fill-opacity=0.1&lakes.fill=008080ff&roads.fill-opacity=0.25");
 }
 
@@ -70,7 +71,7 @@ TEST(StyleParametersTest, ANameThatMeansNothingIsAProblemWithTheNearestThatDoes)
 }
 
 TEST(StyleParametersTest, OneNameIsFreeForAnyValue) {
-  EXPECT_EQ(canonical("_=1732000000&fill=red&_=2"), canonical("fill=red"));
+  EXPECT_EQ(canonical_query("_=1732000000&fill=red&_=2"), canonical_query("fill=red"));
   EXPECT_FALSE(parse("_fill=red"));
 }
 
@@ -117,26 +118,26 @@ TEST(StyleParametersTest, AParameterGivenTwiceIsAProblem) {
 }
 
 TEST(StyleParametersTest, TheSameToleranceHasOneText) {
-  EXPECT_EQ(canonical("simplify=0.50"), "simplify=0.5");
-  EXPECT_EQ(canonical("simplify=5e-1"), "simplify=0.5");
-  EXPECT_EQ(canonical("simplify=-0"), "simplify=0");
-  EXPECT_EQ(canonical("simplify=64"), "simplify=64");
-  EXPECT_NE(canonical("simplify=0"), canonical(""));
+  EXPECT_EQ(canonical_query("simplify=0.50"), "simplify=0.5");
+  EXPECT_EQ(canonical_query("simplify=5e-1"), "simplify=0.5");
+  EXPECT_EQ(canonical_query("simplify=-0"), "simplify=0");
+  EXPECT_EQ(canonical_query("simplify=64"), "simplify=64");
+  EXPECT_NE(canonical_query("simplify=0"), canonical_query(""));
 }
 
 TEST(StyleParametersTest, ListsOfWordsHaveOneOrderAndNoRepetition) {
-  const std::string all = canonical("debug=mesh,tile,vertices");
-  EXPECT_EQ(canonical("debug=vertices,mesh,tile"), all);
-  EXPECT_EQ(canonical("debug=tile,vertices,mesh,tile,tile"), all);
-  EXPECT_EQ(canonical(all), all);
-  EXPECT_EQ(canonical("debug=tile"), "debug=tile");
+  const std::string all = canonical_query("debug=mesh,tile,vertices");
+  EXPECT_EQ(canonical_query("debug=vertices,mesh,tile"), all);
+  EXPECT_EQ(canonical_query("debug=tile,vertices,mesh,tile,tile"), all);
+  EXPECT_EQ(canonical_query(all), all);
+  EXPECT_EQ(canonical_query("debug=tile"), "debug=tile");
 }
 
 TEST(StyleParametersTest, GeneralizationIsSetForAllLayersOrForOne) {
   const std::string text =
-      canonical("roads.topology=fast&small=drop&lakes.simplify=2&lakes.small=keep");
+      canonical_query("roads.topology=fast&small=drop&lakes.simplify=2&lakes.small=keep");
   EXPECT_EQ(text, "small=drop&lakes.simplify=2&lakes.small=keep&roads.topology=fast");
-  EXPECT_EQ(canonical(text), text);
+  EXPECT_EQ(canonical_query(text), text);
   const auto parsed = parse(text);
   const auto& query = *parsed;
   EXPECT_EQ(query.value_for("lakes", ParameterId::simplify), ParameterValue(2.0));

@@ -16,20 +16,9 @@
 namespace trapeze {
 namespace {
 
-constexpr std::int32_t kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
-
-std::int32_t cell(double pixels) {
-  return static_cast<std::int32_t>(kGridMin + pixels * kPixel);
-}
-
-Rings box(double west, double north, double east, double south) {
-  Rings rings;
-  rings.add(std::vector<Point>{{cell(west), cell(north)},
-                               {cell(east), cell(north)},
-                               {cell(east), cell(south)},
-                               {cell(west), cell(south)}});
-  return rings;
-}
+using testing::box;
+using testing::cell;
+using testing::expect_near;
 
 /// Pixels of the tile of zoom 0, by id:
 ///   1  city, 500 people: columns 32 to 96.5, rows 32 to 96
@@ -37,7 +26,7 @@ Rings box(double west, double north, double east, double south) {
 ///   3  no kind, 100 people: columns 32 to 96, rows 128 to 192
 ///   4  a triangle, city, no people
 ///   10 to 25  specks, a sixteenth of a pixel each, in the pixel of column 200, row 40
-std::shared_ptr<const Dataset> plots() {
+std::shared_ptr<const Dataset> settlements() {
   FeatureTable features({{"kind", FieldType::text}, {"people", FieldType::integer}});
   std::vector<LayerBuilder> builders(1);
   const auto add = [&](std::int64_t id, Rings rings, std::vector<Value> values) {
@@ -77,20 +66,12 @@ class StylePicturesTest : public ::testing::Test {
 
   testing::SampleSite site_{false};
 
-  void SetUp() override { site_.data().set(plots()); }
+  void SetUp() override { site_.data().set(settlements()); }
 };
 
 constexpr Rgba kRed{255, 0, 0, 255};
 constexpr Rgba kBlue{0, 0, 255, 255};
 constexpr Rgba kGrey{128, 128, 128, 255};
-
-void expect_near(Rgba actual, Rgba expected, int tolerance) {
-  EXPECT_NEAR(actual.a, expected.a, tolerance);
-  if (expected.a == 0) return;
-  EXPECT_NEAR(actual.r, expected.r, tolerance);
-  EXPECT_NEAR(actual.g, expected.g, tolerance);
-  EXPECT_NEAR(actual.b, expected.b, tolerance);
-}
 
 TEST_F(StylePicturesTest, ClassesByValue) {
   const Picture picture = tile("color-by=kind&classes=city:red,village:blue,null:lime");
@@ -343,7 +324,7 @@ std::string random_query(std::mt19937& random) {
 }
 
 TEST_F(StylePicturesTest, NoQueryEverFails) {
-  const auto dataset = plots();
+  const auto dataset = settlements();
   const StyleBook styles;
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);

@@ -22,17 +22,14 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
+using testing::kPixel;
+using testing::point_at;
+
 constexpr int kColumns = 8;
 constexpr double kSide = 24;  // pixels
 constexpr double kFrom = 32;  // where the plots begin, in columns and rows
 constexpr double kTo = kFrom + kColumns * kSide;
-constexpr std::array<const char*, 3> kKinds = {"a", "b", "c"};
-
-Point at(double x, double y) {
-  return {static_cast<std::int32_t>(kGridMin + x * kPixel),
-          static_cast<std::int32_t>(kGridMin + y * kPixel)};
-}
+constexpr std::array<const char*, 3> kPlotKinds = {"a", "b", "c"};
 
 /// The borders between plots, each random but generated only once; the outer borders are straight.
 class Plots {
@@ -47,8 +44,8 @@ class Plots {
     for (int i = 0; i < kPieces; ++i) {
       const double share = static_cast<double>(i) / kPieces;
       const double shift = is_outer || i == 0 ? 0 : off(random_);
-      points.push_back(at(kFrom + (x + share * dx) * kSide + (dx == 0 ? shift : 0),
-                          kFrom + (y + share * dy) * kSide + (dy == 0 ? shift : 0)));
+      points.push_back(point_at(kFrom + (x + share * dx) * kSide + (dx == 0 ? shift : 0),
+                                kFrom + (y + share * dy) * kSide + (dy == 0 ? shift : 0)));
     }
     return points;
   }
@@ -60,7 +57,9 @@ class Plots {
       if (!forward) std::reverse(points.begin(), points.end());
       ring.insert(ring.end(), points.begin(), points.end() - 1);
     };
-    const auto corner = [](int cx, int cy) { return at(kFrom + cx * kSide, kFrom + cy * kSide); };
+    const auto corner = [](int cx, int cy) {
+      return point_at(kFrom + cx * kSide, kFrom + cy * kSide);
+    };
     add(border(x, y, 1, 0), corner(x + 1, y), true);
     add(border(x + 1, y, 0, 1), corner(x + 1, y + 1), true);
     add(border(x, y + 1, 1, 0), corner(x + 1, y + 1), false);
@@ -103,12 +102,12 @@ std::vector<Rings> plots_and_crumbs() {
     for (int x = 0; x < kColumns; ++x) features.push_back(plots.plot(x, y));
   }
   Rings around = features[18];
-  add_crumbs(12, 0.37, at(kFrom + 2.3 * kSide, kFrom + 2.3 * kSide), around, features);
+  add_crumbs(12, 0.37, point_at(kFrom + 2.3 * kSide, kFrom + 2.3 * kSide), around, features);
   features[18] = around;
   return features;
 }
 
-ServedLayer layer_of(const std::string& name, CoverageMode coverage) {
+ServedLayer layer_of_plots(const std::string& name, CoverageMode coverage) {
   LayerOptions options;
   options.coverage = coverage;
   std::vector<LayerBuilder> builders;
@@ -118,7 +117,7 @@ ServedLayer layer_of(const std::string& name, CoverageMode coverage) {
   std::vector<std::uint32_t> rows;
   std::vector<const Rings*> rings;
   for (std::size_t i = 0; i < features.size(); ++i) {
-    const std::array<Value, 1> values = {std::string_view(kKinds[i % kKinds.size()])};
+    const std::array<Value, 1> values = {std::string_view(kPlotKinds[i % kPlotKinds.size()])};
     rows.push_back(table.append(static_cast<std::int64_t>(i), values));
     rings.push_back(&features[i]);
     if (coverage == CoverageMode::off) builders.front().add(rows.back(), features[i]);
@@ -139,8 +138,8 @@ class CoveragePicturesTest : public ::testing::Test {
  protected:
   void SetUp() override {
     std::vector<ServedLayer> layers;
-    layers.push_back(layer_of("plots", CoverageMode::automatic));
-    layers.push_back(layer_of("apart", CoverageMode::off));
+    layers.push_back(layer_of_plots("plots", CoverageMode::automatic));
+    layers.push_back(layer_of_plots("apart", CoverageMode::off));
     site_.data().set(std::make_shared<const Dataset>(std::move(layers)));
   }
 

@@ -20,13 +20,9 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
-
-struct Place {
-  double x = 0;
-  double y = 0;
-};
-using Ring = std::vector<Place>;  // in pixels of the tile of zoom 0
+using testing::Place;
+using testing::point_at;
+using testing::Ring;
 
 Ring rectangle(double x, double y, double width, double height) {
   return {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
@@ -45,10 +41,7 @@ Ring turned(const Ring& ring, Place around, double angle) {
 
 Rings rings_of(const Ring& ring) {
   std::vector<Point> points;
-  for (const Place p : ring) {
-    points.push_back({static_cast<std::int32_t>(kGridMin + p.x * kPixel),
-                      static_cast<std::int32_t>(kGridMin + p.y * kPixel)});
-  }
+  for (const Place p : ring) points.push_back(point_at(p.x, p.y));
   Rings rings;
   rings.add(points);
   return rings;

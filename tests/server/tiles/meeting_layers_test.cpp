@@ -14,11 +14,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::int32_t kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
-
-std::int32_t cell(double pixels) {
-  return static_cast<std::int32_t>(kGridMin + pixels * kPixel);
-}
+using testing::cell;
 
 /// From north to south through the tile of zoom 0, as rough at every scale as real coasts.
 std::vector<Point> coast() {
@@ -42,7 +38,7 @@ std::vector<Point> coast() {
   return points;
 }
 
-ServedLayer layer_of(const std::string& name, std::vector<Rings> polygons) {
+ServedLayer layer_of_kinds(const std::string& name, std::vector<Rings> polygons) {
   FeatureTable features({{"kind", FieldType::text}});
   std::vector<LayerBuilder> builders(1);
   for (Rings& rings : polygons) {
@@ -71,9 +67,9 @@ class MeetingLayersTest : public ::testing::Test {
  protected:
   void SetUp() override {
     std::vector<ServedLayer> layers;
-    layers.push_back(layer_of("land", {ring_of(coast(), 20.3)}));
-    layers.push_back(layer_of("water", {ring_of(coast(), 235.6)}));
-    layers.push_back(layer_of("park", {ring_of(coast(), 90)}));
+    layers.push_back(layer_of_kinds("land", {ring_of(coast(), 20.3)}));
+    layers.push_back(layer_of_kinds("water", {ring_of(coast(), 235.6)}));
+    layers.push_back(layer_of_kinds("park", {ring_of(coast(), 90)}));
     site_.data().set(std::make_shared<const Dataset>(std::move(layers)));
   }
 

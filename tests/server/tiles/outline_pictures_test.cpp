@@ -21,12 +21,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
-
-Point at(double x, double y) {
-  return {static_cast<std::int32_t>(kGridMin + x * kPixel),
-          static_cast<std::int32_t>(kGridMin + y * kPixel)};
-}
+using testing::point_at;
 
 /// A star around a place, with approximately this extent.
 Rings star(double x, double y, double extent, double roughness, unsigned seed) {
@@ -38,7 +33,7 @@ Rings star(double x, double y, double extent, double roughness, unsigned seed) {
   for (int i = 0; i < kRays; ++i) {
     const double angle = 2 * std::numbers::pi * i / kRays;
     const double r = radius(random);
-    rings.points.push_back(at(x + r * std::cos(angle), y + r * std::sin(angle)));
+    rings.points.push_back(point_at(x + r * std::cos(angle), y + r * std::sin(angle)));
   }
   rings.close_ring();
   return rings;
@@ -111,10 +106,10 @@ TEST_F(OutlinePicturesTest, InkOfARingGoesToNothingWithItsSize) {
 
 TEST_F(OutlinePicturesTest, ALargeOneIsWholeBesideASmallOne) {
   Rings large;
-  large.points = {at(50, 50), at(50, 150), at(150, 150), at(150, 50)};
+  large.points = {point_at(50, 50), point_at(50, 150), point_at(150, 150), point_at(150, 50)};
   large.close_ring();
   Rings small;
-  small.points = {at(150, 80), at(150, 82), at(152, 82), at(152, 80)};
+  small.points = {point_at(150, 80), point_at(150, 82), point_at(152, 82), point_at(152, 80)};
   small.close_ring();
   serve({large, small}, CoverageMode::on);
   const Picture picture = tile("0/0/0", "stroke=000&stroke-width=2");
@@ -170,8 +165,8 @@ void expect_alike_up_to(int end, const Picture& a, const Picture& b) {
 }
 
 TEST_F(OutlinePicturesTest, CornersOfWhatLiesUnderOthersAreJoined) {
-  serve({polygon({at(60, 60), at(60, 120), at(120, 120), at(120, 60)}),
-         polygon({at(110, 80), at(110, 100), at(150, 100), at(150, 80)})});
+  serve({polygon({point_at(60, 60), point_at(60, 120), point_at(120, 120), point_at(120, 60)}),
+         polygon({point_at(110, 80), point_at(110, 100), point_at(150, 100), point_at(150, 80)})});
   for (const std::string join : kJoins) {
     const std::string query = "fill=fff&stroke=000&stroke-width=12&stroke-linejoin=" + join;
     for (const auto& [name, end] : {std::pair("0/0/0", 100), {"WorldCRS84Quad/0/0/0", 100}}) {
@@ -184,9 +179,11 @@ TEST_F(OutlinePicturesTest, CornersOfWhatLiesUnderOthersAreJoined) {
 }
 
 TEST_F(OutlinePicturesTest, CornersOfABorderThatLiesUnderOthersAreJoined) {
-  serve({polygon({at(40, 40), at(40, 160), at(80, 160), at(60, 120), at(90, 80), at(70, 40)}),
-         polygon({at(70, 40), at(90, 80), at(60, 120), at(80, 160), at(160, 160), at(160, 40)}),
-         polygon({at(50, 150), at(50, 170), at(150, 170), at(150, 150)})},
+  serve({polygon({point_at(40, 40), point_at(40, 160), point_at(80, 160), point_at(60, 120),
+                  point_at(90, 80), point_at(70, 40)}),
+         polygon({point_at(70, 40), point_at(90, 80), point_at(60, 120), point_at(80, 160),
+                  point_at(160, 160), point_at(160, 40)}),
+         polygon({point_at(50, 150), point_at(50, 170), point_at(150, 170), point_at(150, 150)})},
         CoverageMode::automatic);
   for (const std::string join : kJoins) {
     SCOPED_TRACE(join);
@@ -204,8 +201,9 @@ TEST_F(OutlinePicturesTest, CornersOfABorderThatLiesUnderOthersAreJoined) {
 
 TEST_F(OutlinePicturesTest, CornersThatStaySharpAreJoined) {
   // The second is in the triangle where the inner corner of the first would be rounded.
-  serve({polygon({at(60, 60), at(60, 120), at(90, 120), at(90, 90), at(120, 90), at(120, 60)}),
-         polygon({at(93, 93), at(93, 96), at(96, 93)})});
+  serve({polygon({point_at(60, 60), point_at(60, 120), point_at(90, 120), point_at(90, 90),
+                  point_at(120, 90), point_at(120, 60)}),
+         polygon({point_at(93, 93), point_at(93, 96), point_at(96, 93)})});
   const std::string query = "stroke=000&stroke-width=12&smooth=14&stroke-linejoin=";
   EXPECT_EQ(tile("0/0/0", query + "miter").at(84, 84).a, 255);
   EXPECT_EQ(tile("0/0/0", query + "round").at(84, 84).a, 0);

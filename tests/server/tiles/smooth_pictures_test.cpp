@@ -17,13 +17,9 @@
 namespace trapeze {
 namespace {
 
-constexpr double kPixel = 1 << 23;  // cells in a pixel of the tile of zoom 0
-
-struct Place {
-  double x = 0;
-  double y = 0;
-};
-using Ring = std::vector<Place>;  // in pixels of the tile of zoom 0
+using testing::Place;
+using testing::point_at;
+using testing::Ring;
 
 /// Land cover as derived from a raster, with steps and slopes and with a hole.
 const std::vector<Ring> kStairs = {
@@ -113,10 +109,7 @@ class SmoothPicturesTest : public ::testing::Test {
     Rings rings;
     for (const Ring& ring : shape) {
       std::vector<Point> points;
-      for (const Place p : ring) {
-        points.push_back({static_cast<std::int32_t>(kGridMin + p.x * kPixel),
-                          static_cast<std::int32_t>(kGridMin + p.y * kPixel)});
-      }
+      for (const Place p : ring) points.push_back(point_at(p.x, p.y));
       rings.add(points);
     }
     return rings;

@@ -31,7 +31,7 @@ using testing::GeosValidity;
 using testing::rings_of_source;
 
 // GEOS compares every hole of a polygon with every other: minutes for ten thousands.
-constexpr std::size_t kMaxHolesForGeos = 500;
+constexpr std::size_t kMaxFaceHolesForGeos = 500;
 
 /// Those of all zooms, and ten that belong to no zoom, in ascending order.
 std::vector<double> tolerances() {
@@ -107,7 +107,7 @@ class CoverageTrial {
   void judge_validity(const Polygons& polygons) const {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const std::size_t begin = polygons.first_ring(i);
-      if (polygons.ends[i] - begin > kMaxHolesForGeos) continue;
+      if (polygons.ends[i] - begin > kMaxFaceHolesForGeos) continue;
       EXPECT_EQ(geos_.complaint(polygons.rings, begin, polygons.ends[i]), "");
     }
   }

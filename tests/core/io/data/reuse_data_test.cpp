@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <random>
 #include <string>
@@ -24,11 +22,6 @@ namespace trapeze {
 namespace {
 
 using Features = std::vector<OGRFeatureUniquePtr>;
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 /// An in-memory layer that can be changed and written.
 class EditedLayer {

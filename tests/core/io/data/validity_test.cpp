@@ -32,7 +32,7 @@ using testing::rings_of_source;
 
 constexpr int kFinestZoom = 22;
 // GEOS compares every hole of a polygon with every other: minutes for ten thousands.
-constexpr std::size_t kMaxHolesForGeos = 2000;
+constexpr std::size_t kMaxFeatureHolesForGeos = 2000;
 // The share held by the topology test is checked only with enough vertices to be meaningful.
 constexpr std::size_t kEnoughVertices = 1000;
 
@@ -180,7 +180,7 @@ class FeatureTrial {
     EXPECT_EQ(judged_.kept, left_.points.size()) << "feature " << feature_ << " at zoom " << zoom;
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const std::size_t begin = polygons.first_ring(i);
-      const bool is_for_geos = polygons.ends[i] - begin <= kMaxHolesForGeos + 1;
+      const bool is_for_geos = polygons.ends[i] - begin <= kMaxFeatureHolesForGeos + 1;
       judged_.by_geos += is_for_geos ? 1 : 0;
       EXPECT_EQ(is_for_geos ? geos_.complaint(polygons.rings, begin, polygons.ends[i])
                             : complaint_of_graph(polygons.rings, begin, polygons.ends[i]),

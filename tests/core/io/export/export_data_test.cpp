@@ -17,24 +17,24 @@
 namespace trapeze {
 namespace {
 
-struct Trial {
+struct ExportTrial {
   const char* file;
   int zoom;
   bool is_subdivided = false;  // is not valid in degrees without further vertices on long edges
 };
 
-void PrintTo(const Trial& trial, std::ostream* out) {
+void PrintTo(const ExportTrial& trial, std::ostream* out) {
   *out << trial.file << " at " << trial.zoom;
 }
 
-constexpr Trial kTrials[] = {{"malta_landuse.fgb", 12},
-                             {"shenzhen_buildings.fgb", 13},
-                             {"us_counties.fgb", 4},
-                             {"lands_complex.fgb", 0, true},
-                             {"awkward/earcut.geojson", 9, true},
-                             {"awkward/geos_validity.geojson", 22, true}};
+constexpr ExportTrial kTrials[] = {{"malta_landuse.fgb", 12},
+                                   {"shenzhen_buildings.fgb", 13},
+                                   {"us_counties.fgb", 4},
+                                   {"lands_complex.fgb", 0, true},
+                                   {"awkward/earcut.geojson", 9, true},
+                                   {"awkward/geos_validity.geojson", 22, true}};
 
-class ExportDataTest : public ::testing::TestWithParam<Trial> {};
+class ExportDataTest : public ::testing::TestWithParam<ExportTrial> {};
 
 TEST_P(ExportDataTest, EveryPolygonOfEveryFormatIsValidInDegreesAndInMetres) {
   const char* data = std::getenv("TRAPEZE_DATA");

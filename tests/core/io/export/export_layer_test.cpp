@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <random>
 
@@ -88,11 +86,6 @@ class Written {
   OGRLayer* layer_ = nullptr;
   std::vector<OGRFeatureUniquePtr> features_;
 };
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 std::vector<std::string> files_in(const std::string& folder) {
   std::vector<std::string> names;

@@ -22,13 +22,13 @@
 namespace trapeze {
 namespace {
 
-struct Trial {
+struct GrowTrial {
   const char* file;
   int zoom;
   double width;  // pixels
 };
 
-void PrintTo(const Trial& trial, std::ostream* out) {
+void PrintTo(const GrowTrial& trial, std::ostream* out) {
   *out << trial.file << " at " << trial.zoom;
 }
 
@@ -106,7 +106,7 @@ OGRPolygon polygon_of(const Exaggeration::Triangle& triangle) {
   return polygon;
 }
 
-class GrowDataTest : public ::testing::TestWithParam<Trial> {
+class GrowDataTest : public ::testing::TestWithParam<GrowTrial> {
  protected:
   void SetUp() override {
     const char* data = std::getenv("TRAPEZE_DATA");
@@ -218,9 +218,9 @@ TEST_P(GrowDataTest, EverythingIsValidInDegrees) {
 
 INSTANTIATE_TEST_SUITE_P(
     Files, GrowDataTest,
-    ::testing::Values(Trial{"malta_natural.fgb", 13, 3}, Trial{"malta_landuse.fgb", 12, 4},
-                      Trial{"shenzhen_water.fgb", 10, 4}, Trial{"us_counties.fgb", 4, 3},
-                      Trial{"europe_countries.fgb", 4, 3}),
+    ::testing::Values(GrowTrial{"malta_natural.fgb", 13, 3}, GrowTrial{"malta_landuse.fgb", 12, 4},
+                      GrowTrial{"shenzhen_water.fgb", 10, 4}, GrowTrial{"us_counties.fgb", 4, 3},
+                      GrowTrial{"europe_countries.fgb", 4, 3}),
     [](const auto& test) { return std::filesystem::path(test.param.file).stem().string(); });
 
 }  // namespace

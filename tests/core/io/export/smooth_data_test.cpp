@@ -23,13 +23,13 @@ namespace {
 
 using testing::SegmentCounts;
 
-struct Trial {
+struct SmoothTrial {
   const char* file;
   int zoom;
   CoverageMode coverage = kUsualCoverage;
 };
 
-void PrintTo(const Trial& trial, std::ostream* out) {
+void PrintTo(const SmoothTrial& trial, std::ostream* out) {
   *out << trial.file << " at " << trial.zoom;
 }
 
@@ -89,7 +89,7 @@ Drawn drawn_outlines(const Layer& layer, Level level, double pixel) {
   return drawn;
 }
 
-class SmoothDataTest : public ::testing::TestWithParam<Trial> {
+class SmoothDataTest : public ::testing::TestWithParam<SmoothTrial> {
  protected:
   void SetUp() override {
     const char* data = std::getenv("TRAPEZE_DATA");
@@ -133,10 +133,10 @@ TEST_P(SmoothDataTest, EveryFeatureIsOutlinedAsItIsDrawn) {
 
 INSTANTIATE_TEST_SUITE_P(
     Files, SmoothDataTest,
-    ::testing::Values(Trial{"malta_landuse.fgb", 12}, Trial{"malta_natural.fgb", 15},
-                      Trial{"shenzhen_buildings.fgb", 14}, Trial{"us_counties.fgb", 5},
-                      Trial{"lands_complex.fgb", 2}, Trial{"europe_countries.fgb", 4},
-                      Trial{"malta_landuse.fgb", 14, CoverageMode::off}),
+    ::testing::Values(SmoothTrial{"malta_landuse.fgb", 12}, SmoothTrial{"malta_natural.fgb", 15},
+                      SmoothTrial{"shenzhen_buildings.fgb", 14}, SmoothTrial{"us_counties.fgb", 5},
+                      SmoothTrial{"lands_complex.fgb", 2}, SmoothTrial{"europe_countries.fgb", 4},
+                      SmoothTrial{"malta_landuse.fgb", 14, CoverageMode::off}),
     [](const auto& test) {
       return std::filesystem::path(test.param.file).stem().string() + "_" +
              std::to_string(test.param.zoom);

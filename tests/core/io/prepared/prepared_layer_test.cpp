@@ -10,7 +10,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <new>
 #include <sstream>
 #include <string>
@@ -52,11 +51,6 @@ std::string failure_of(const std::string& path, const PreparedDemands& demands =
     return error.what();
   }
   return "was opened";
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 /// Bytes aligned as in a mapped file: at the border of a page, or of a cache line.

@@ -58,7 +58,8 @@ std::string write_overview(const TemporaryFolder& folder, const std::vector<std:
   return path;
 }
 
-std::string failure_of(const std::vector<std::string>& files, const PreparedDemands& demands = {}) {
+std::string failure_of_parts(const std::vector<std::string>& files,
+                             const PreparedDemands& demands = {}) {
   try {
     open_prepared_parts(files, demands);
   } catch (const std::runtime_error& error) {
@@ -126,14 +127,14 @@ TEST(PreparedPartsTest, ThoseThatAreTheSameAreTakenOver) {
 TEST(PreparedPartsTest, TellsWhichAreMissingOrThereTwice) {
   const TemporaryFolder folder;
   const auto files = prepare(folder, write_squares(folder, "squares.gpkg", 20), "part", 6);
-  EXPECT_THAT(failure_of({files[0], files[2], files[3]}),
+  EXPECT_THAT(failure_of_parts({files[0], files[2], files[3]}),
               HasSubstr("parts 2, 5 and 6 of 6 are missing"));
-  EXPECT_THAT(failure_of({files[0], files[1], files[2], files[3], files[4]}),
+  EXPECT_THAT(failure_of_parts({files[0], files[1], files[2], files[3], files[4]}),
               HasSubstr("part 6 of 6 is missing"));
   std::vector<std::string> twice = files;
   twice.push_back(folder.file("copy.trapeze"));
   std::filesystem::copy_file(files[4], twice.back());
-  EXPECT_THAT(failure_of(twice),
+  EXPECT_THAT(failure_of_parts(twice),
               AllOf(HasSubstr("part 5 of 6"), HasSubstr(files[4]), HasSubstr(twice.back())));
 }
 
@@ -146,16 +147,18 @@ TEST(PreparedPartsTest, RefusesWhatDoesNotBelongTogether) {
   LayerOptions apart;
   apart.coverage = CoverageMode::off;
   const auto without = prepare(folder, source, "apart", 3, apart);
-  EXPECT_THAT(failure_of({files[0], others[1], files[2]}),
+  EXPECT_THAT(failure_of_parts({files[0], others[1], files[2]}),
               AllOf(HasSubstr(others[1]), HasSubstr("another source")));
-  EXPECT_THAT(failure_of({files[0], fewer[1], files[2]}),
+  EXPECT_THAT(failure_of_parts({files[0], fewer[1], files[2]}),
               AllOf(HasSubstr("part 2 of 2"), HasSubstr("part 1 of 3")));
-  EXPECT_THAT(failure_of({files[0], without[1], files[2]}), HasSubstr("other options"));
-  EXPECT_THAT(failure_of(files, {std::nullopt, "", CoverageMode::off}), HasSubstr("coverage"));
+  EXPECT_THAT(failure_of_parts({files[0], without[1], files[2]}), HasSubstr("other options"));
+  EXPECT_THAT(failure_of_parts(files, {std::nullopt, "", CoverageMode::off}),
+              HasSubstr("coverage"));
   const std::string whole = folder.file("whole.trapeze");
   save_prepared_layer(whole, load_layer(source), 1, stamp_source(source));
-  EXPECT_THAT(failure_of({files[0], files[1], files[2], whole}), HasSubstr("is a whole layer"));
-  EXPECT_THAT(failure_of({source}), HasSubstr("is not a prepared file"));
+  EXPECT_THAT(failure_of_parts({files[0], files[1], files[2], whole}),
+              HasSubstr("is a whole layer"));
+  EXPECT_THAT(failure_of_parts({source}), HasSubstr("is not a prepared file"));
 }
 
 TEST(PreparedPartsTest, RefusesAnOverviewOfOtherParts) {
@@ -164,13 +167,13 @@ TEST(PreparedPartsTest, RefusesAnOverviewOfOtherParts) {
   auto files = prepare(folder, source, "part", 3);
   const std::string overview = write_overview(folder, files);
   files.push_back(overview);
-  EXPECT_EQ(failure_of(files), "was opened");
-  EXPECT_THAT(failure_of({overview}), HasSubstr("no part"));
+  EXPECT_EQ(failure_of_parts(files), "was opened");
+  EXPECT_THAT(failure_of_parts({overview}), HasSubstr("no part"));
   LoadOptions options;
   options.division = SourceDivision::of(source, {}, {}, 3, {});
   options.part = 2;
   save_prepared_layer(files[1], load_layer(source, options), 77, stamp_source(source));
-  EXPECT_THAT(failure_of(files), AllOf(HasSubstr(overview), HasSubstr("--join")));
+  EXPECT_THAT(failure_of_parts(files), AllOf(HasSubstr(overview), HasSubstr("--join")));
 }
 
 TEST(PreparedPartsTest, PatternsStandForTheFilesOfAFolder) {

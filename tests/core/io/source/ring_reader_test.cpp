@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/grid/web_mercator.h"
+#include "tests/core/io/source/written_source.h"
 
 namespace trapeze {
 namespace {
@@ -19,16 +20,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-OGRSpatialReference reference_of(const std::string& name) {
-  OGRSpatialReference reference;
-  EXPECT_EQ(reference.SetFromUserInput(name.c_str()), OGRERR_NONE) << name;
-  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return reference;
-}
-
 SourceCrs crs_of(const std::string& name) {
   if (name.empty()) return SourceCrs::describe(nullptr);
-  const OGRSpatialReference reference = reference_of(name);
+  const OGRSpatialReference reference = test_reference(name);
   return SourceCrs::describe(&reference);
 }
 
@@ -79,8 +73,8 @@ Point at(double lon, double lat) {
 
 // The grid cell computed by PROJ alone, along the path that GDAL itself would take to EPSG:3857.
 std::vector<Point> by_proj(const std::string& crs, std::vector<double> x, std::vector<double> y) {
-  const OGRSpatialReference source = reference_of(crs);
-  const OGRSpatialReference target = reference_of("EPSG:3857");
+  const OGRSpatialReference source = test_reference(crs);
+  const OGRSpatialReference target = test_reference("EPSG:3857");
   const std::unique_ptr<OGRCoordinateTransformation> transformation(
       OGRCreateCoordinateTransformation(&source, &target));
   EXPECT_TRUE(transformation->Transform(static_cast<int>(x.size()), x.data(), y.data()));

@@ -17,19 +17,13 @@
 #include <ogr_geometry.h>
 
 #include "core/io/source/ring_reader.h"
+#include "tests/core/io/source/written_source.h"
 
 namespace trapeze {
 namespace {
 
-OGRSpatialReference reference_of(const std::string& name) {
-  OGRSpatialReference reference;
-  EXPECT_EQ(reference.SetFromUserInput(name.c_str()), OGRERR_NONE) << name;
-  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return reference;
-}
-
 FeatureRings read_on_grid(const std::string& wkt, const std::string& crs, const std::string& grid) {
-  const OGRSpatialReference reference = reference_of(crs);
+  const OGRSpatialReference reference = test_reference(crs);
   const SourceCrs described = SourceCrs::describe(&reference);
   OGRGeometry* geometry = nullptr;
   EXPECT_EQ(OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &geometry), OGRERR_NONE);
@@ -120,8 +114,8 @@ TEST_P(EdgesOnGridTest, StayWhereTheyAre) {
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   const auto grid = find_target_grid(one.grid);
-  const OGRSpatialReference source = reference_of(one.crs);
-  const OGRSpatialReference target = reference_of(one.grid);
+  const OGRSpatialReference source = test_reference(one.crs);
+  const OGRSpatialReference target = test_reference(one.grid);
   const std::unique_ptr<OGRCoordinateTransformation> straight(
       OGRCreateCoordinateTransformation(&source, &target));
   ASSERT_NE(straight, nullptr);

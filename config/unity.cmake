@@ -1,0 +1,42 @@
+# Compiles the sources of a folder together, up to so many at once (unity build): most of the time
+# that a source takes goes to the headers that all of them include. So names in unnamed namespaces
+# are unique within a folder. -DCMAKE_UNITY_BUILD=OFF compiles each source by itself.
+set(TRAPEZE_UNITED 8 CACHE STRING "Sources compiled at once, if CMAKE_UNITY_BUILD is on")
+
+# Adding a source to a folder does not change what is compiled together elsewhere.
+function(trapeze_unite target)
+  get_target_property(type ${target} TYPE)
+  if(NOT type MATCHES "EXECUTABLE|_LIBRARY" OR type STREQUAL "INTERFACE_LIBRARY")
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  get_target_property(root ${target} SOURCE_DIR)
+  list(SORT sources)
+  foreach(source ${sources})
+    get_filename_component(folder ${source} DIRECTORY)
+    string(MAKE_C_IDENTIFIER "${folder}" folder)
+    if(IS_ABSOLUTE ${source})
+      set(folder generated)
+    endif()
+    if(NOT DEFINED count_${folder})
+      set(count_${folder} 0)
+    endif()
+    math(EXPR batch "${count_${folder}} / ${TRAPEZE_UNITED}")
+    math(EXPR count_${folder} "${count_${folder}} + 1")
+    get_filename_component(path ${source} ABSOLUTE BASE_DIR ${root})
+    set_source_files_properties(${path} TARGET_DIRECTORY ${target}
+      PROPERTIES UNITY_GROUP "${folder}_${batch}")
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()
+
+function(trapeze_unite_all directory)
+  get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target ${targets})
+    trapeze_unite(${target})
+  endforeach()
+  get_property(directories DIRECTORY ${directory} PROPERTY SUBDIRECTORIES)
+  foreach(below ${directories})
+    trapeze_unite_all(${below})
+  endforeach()
+endfunction()
