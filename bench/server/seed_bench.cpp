@@ -88,7 +88,7 @@ class Seeding {
     Seeder seeder(*plan_, jobs_, renderers(), std::make_shared<LabelBook>(), {});
     Run run;
     {
-      SeedLog log(path, {plan_->identity("bench"), jobs_.jobs.size(), all, {}, {}});
+      SeedLog log(path, {plan_->identity("bench", ""), jobs_.jobs.size(), all, {}, {}});
       const Stopwatch watch;
       seeder.seed(all, log, [](const SeedProgress&) {});
       run.cost = watch.read();

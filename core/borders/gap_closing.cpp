@@ -404,6 +404,7 @@ class GapRounds {
       restore();
       for (const std::uint32_t i : spoilt) takes_part_[i] = false;
       done_.kept.insert(done_.kept.end(), spoilt.begin(), spoilt.end());
+      std::sort(done_.kept.begin(), done_.kept.end());
     }
     return give_up("they would overlap");
   }
@@ -442,7 +443,6 @@ class GapRounds {
   GapClosing finish(const Attempt& attempt) {
     done_.moved = attempt.moved;
     done_.led = attempt.led;
-    std::sort(done_.kept.begin(), done_.kept.end());
     for (std::size_t i = 0; i < features_.size(); ++i) {
       if (*features_[i] != drawn_[i].rings) done_.drawn[i] = std::move(drawn_[i].rings);
     }

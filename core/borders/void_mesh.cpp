@@ -29,7 +29,10 @@ double length_between(Point a, Point b) {
 }  // namespace
 
 VoidMesh::VoidMesh(const TrapezoidalGraph& graph)
-    : graph_(graph), points_(graph.vertices().begin(), graph.vertices().end()) {
+    : graph_(graph),
+      points_(graph.vertices().begin(), graph.vertices().end()),
+      has_failed_(graph.vertex_count() > kMostVertices) {
+  if (has_failed_) return;
   triangulate();
   make_delaunay();
 }
@@ -368,6 +371,8 @@ std::optional<Point> VoidMesh::divide_wall(HalfEdge h, double x, double y) {
     least = off;
   }
   if (foot == a) return std::nullopt;
+  has_failed_ = has_failed_ || corners_.size() + 3 > kWallBit;
+  if (has_failed_) return std::nullopt;
 
   const VertexId f(points_.size());
   points_.push_back(foot);

@@ -33,7 +33,8 @@ class VoidMesh {
   /// Meshes the void of the graph of a coverage as built; the graph must outlive the mesh.
   explicit VoidMesh(const TrapezoidalGraph& graph);
 
-  /// Whether too many edges had to be flipped: there is no mesh then.
+  /// Whether too many edges had to be flipped, or there are more triangles than half-edges can
+  /// number: there is no mesh then.
   bool has_failed() const { return has_failed_; }
 
   /// Splits edges of polygons near a vertex: where the triangle at an edge has an obtuse angle
@@ -98,6 +99,8 @@ class VoidMesh {
  private:
   static constexpr std::uint32_t kWallBit = 0x80000000;
   static constexpr std::uint32_t kUnknown = 0xffffffff;
+  /// Each vertex adds two triangles, and numbers of half-edges lack a bit. The rest is for feet.
+  static constexpr std::size_t kMostVertices = std::size_t{1} << 28;
   static constexpr VertexId kInfinity = VertexId(std::size_t{0});
 
   struct Wall {

@@ -33,12 +33,26 @@ double area_of_ring(std::span<const Point> ring) {
   return std::abs(twice) / 2;
 }
 
+/// How many rows of equal height to sort sides into. `heights` is the sum of their heights, each at
+/// most `height`. Where most sides are high, more rows would need much memory and save nothing.
+std::size_t row_count(std::size_t sides, double heights, double height) {
+  constexpr std::size_t kSidesPerRow = 4;
+  constexpr std::size_t kMostRows = 4096;
+  constexpr double kRowsPerSide = 16;  // on average, at most
+  const std::size_t rows = std::clamp<std::size_t>(sides / kSidesPerRow, 1, kMostRows);
+  if (heights <= 0) return rows;
+  const double most = kRowsPerSide * static_cast<double>(sides) * height / heights;
+  return static_cast<std::size_t>(std::clamp(most, 1.0, static_cast<double>(rows)));
+}
+
 /// Sides of a ring, indexed by height.
 class RingIndex {
  public:
   explicit RingIndex(std::span<const Point> ring) : ring_(ring), box_(box_of(ring)) {
     if (ring.size() < kLeastSides) return;
-    rows_.resize(std::min(ring.size() / kSidesPerRow, kMostRows));
+    double sum = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) sum += heights(i).second - heights(i).first;
+    rows_.resize(row_count(ring.size(), sum, static_cast<double>(box_.max_y) - box_.min_y));
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const auto [low, high] = heights(i);
       for (std::size_t row = row_at(low); row <= row_at(high); ++row) {
@@ -67,8 +81,6 @@ class RingIndex {
 
  private:
   static constexpr std::size_t kLeastSides = 64;
-  static constexpr std::size_t kSidesPerRow = 4;
-  static constexpr std::size_t kMostRows = 4096;
 
   std::size_t next(std::size_t i) const { return i + 1 == ring_.size() ? 0 : i + 1; }
   std::pair<double, double> heights(std::size_t i) const {
@@ -177,12 +189,12 @@ class Boundary {
   }
   /// Must be called once all rings have been added.
   void sort(const Box& box) {
-    constexpr std::size_t kSidesPerRow = 4;
-    constexpr std::size_t kMostRows = 4096;
     top_ = box.min_y;
-    const std::size_t rows = std::clamp<std::size_t>(sides_.size() / kSidesPerRow, 1, kMostRows);
-    row_height_ =
-        std::max((static_cast<double>(box.max_y) - box.min_y) / static_cast<double>(rows), 1e-3);
+    const double height = static_cast<double>(box.max_y) - box.min_y;
+    double heights = 0;
+    for (const Side& side : sides_) heights += std::min(std::abs(side.dy), height);
+    const std::size_t rows = row_count(sides_.size(), heights, height);
+    row_height_ = std::max(height / static_cast<double>(rows), 1e-3);
     rows_.resize(std::max(rows_.size(), rows));
     row_count_ = rows;
     for (std::size_t i = 0; i < rows; ++i) rows_[i].clear();

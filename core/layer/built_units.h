@@ -39,9 +39,12 @@ struct FeatureUnit {
   std::uint32_t is_noded = 0;
 };
 
-/// A group of a coverage, with its outcome; see CoverageOutcome. Groups that failed are not kept.
+/// Instead of the digest of a group that failed: nobody claims it. All its features are apart.
+constexpr Digest kOfFailedGroup = {};
+
+/// A group of a coverage, with its outcome; see CoverageOutcome.
 struct GroupUnit {
-  Digest digest;  // of the digests of its features, in order
+  Digest digest;  // of the digests of its features, in order; or kOfFailedGroup
   StoredTolerance most_tolerance;
   std::uint32_t members_end = 0;   // one past its last feature among the members
   std::uint32_t overlaps_end = 0;  // one past its last pair among the overlaps

@@ -164,8 +164,9 @@ std::array<Point, 4> Strip::corners() const {
 Box box_of_mote(double x, double y, double area) {
   const double width = std::max(1.0, std::round(std::sqrt(area)));
   const double height = std::max(1.0, std::round(area / width));
-  const std::int32_t min_x = cell(x - width / 2);
-  const std::int32_t min_y = cell(y - height / 2);
+  // At the edges of the grid it is shifted, so that no part of it is cut off.
+  const std::int32_t min_x = cell(std::min(x - width / 2, kGridMax - width));
+  const std::int32_t min_y = cell(std::min(y - height / 2, kGridMax - height));
   return {min_x, min_y, cell(min_x + width), cell(min_y + height)};
 }
 

@@ -695,9 +695,16 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   std::future<FeatureOverlaps> finding = std::async(launch, [&] {
     const MeshView mesh{0, arrays.vertices, arrays.edges, arrays.mesh.trapezoids};
     const GrowingMesh& all = arrays.mesh;
-    return find_overlaps({mesh, std::span(all.lifespans).first(polygons),
-                          std::span(all.feature_of).first(polygons), kinds, boxes},
-                         std::move(arrays.known), threads);
+    const auto find = [&](std::span<const std::uint32_t> kinds_of_rows) {
+      return find_overlaps({mesh, std::span(all.lifespans).first(polygons),
+                            std::span(all.feature_of).first(polygons), kinds_of_rows, boxes},
+                           arrays.known, threads);
+    };
+    FeatureOverlaps found = find(kinds);
+    if (found.is_complete || !are_known) return found;
+    // If nothing were taken over, they would not all be found, so the known ones are not kept.
+    std::erase_if(arrays.known, [](const FeatureOverlap& pair) { return !pair.is_in_common(); });
+    return find(arrays.graph_of);
   });
   const Numbering number = order_edges_and_vertices(dust.motes.size(), arrays);
   order_milestones(arrays, *layer);

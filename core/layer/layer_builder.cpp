@@ -224,9 +224,10 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
                state.graph, state.share, threads, state.options.merging(classes));
   state.most_tolerance.reset();
   if (!assembly.together.empty()) state.build_group(rows, assembly, threads);
-  if (assembly.outcome.failure.empty()) {
-    add_group(digests, rows, assembly, state.most_tolerance, state.stock.units);
-  }
+  add_group(digests, rows, assembly, state.most_tolerance, state.stock.units);
+  // Its failure is to be reported again, so nothing is taken over for it. But it has to be known
+  // that its features share borders, although each is built by itself.
+  if (!assembly.outcome.failure.empty()) state.stock.units.groups.back().digest = kOfFailedGroup;
   return assembly;
 }
 

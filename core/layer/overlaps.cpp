@@ -68,7 +68,8 @@ class OverlapSearch {
     most_pairs_ = kLeastPairs + kMostPairsOf * untouched;
   }
 
-  FeatureOverlaps run() {
+  /// So many pairs are known already; they count towards the most that there may be.
+  FeatureOverlaps run(std::size_t known) {
     std::vector<std::uint32_t> rows;
     Box all;
     for (std::uint32_t row = 0; row < input_.boxes.size(); ++row) {
@@ -83,7 +84,7 @@ class OverlapSearch {
       steps_ = 0;
       join(rows, all, kMostHalvings);
     }
-    found_.is_complete = !is_over();
+    found_.is_complete = !is_over() && found_.pairs.size() + known < most_pairs_;
     std::ranges::sort(found_.pairs, {}, [](const FeatureOverlap& overlap) {
       return std::pair(overlap.row, overlap.other);
     });
@@ -365,7 +366,9 @@ OverlapTable::OverlapTable(StoredArray<FeatureOverlap> pairs, std::size_t rows)
 
 FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known,
                               unsigned threads) {
-  FeatureOverlaps found = OverlapSearch(input, threads).run();
+  const auto compared = static_cast<std::size_t>(std::ranges::count_if(
+      known, [](const FeatureOverlap& pair) { return !pair.is_in_common(); }));
+  FeatureOverlaps found = OverlapSearch(input, threads).run(compared);
   if (known.empty()) return found;
   const auto by_rows = [](const FeatureOverlap& pair) { return std::pair(pair.row, pair.other); };
   found.pairs.insert(found.pairs.end(), known.begin(), known.end());

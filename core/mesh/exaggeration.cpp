@@ -21,11 +21,14 @@ constexpr float kWide = -2;
 constexpr double kRounding = 1e-6;  // at least the rounding error of stored numbers
 
 // Lengths in pixels.
-constexpr double kLeastStep = 1;    // between samples
+constexpr double kLeastStep = 1;    // between samples, unless there would be more than kMostSteps
 constexpr double kOffEnds = 0.05;   // values for an end of an edge are computed slightly beside it
 constexpr double kTouching = 0.02;  // walls this near to each other are one
 constexpr double kLeastMove = 0.002;
 constexpr double kLeastBend = 0.004;
+
+// Of an edge: fewer than 32 bits can count, by more than those of a strip.
+constexpr double kMostSteps = 2e9;
 
 // A strip is always split after this many samples, so that the drawing of an edge does not depend
 // on how much of it is known.
@@ -271,7 +274,7 @@ void Exaggeration::divide_edges(const Box& box) {
     Row row;
     row.normal = turned(way) * (1 / along);
     if (const auto shares = shares_in(box, edge.from(), way)) {
-      row.steps = static_cast<std::int32_t>(std::ceil(along / step));
+      row.steps = static_cast<std::int32_t>(std::min(std::ceil(along / step), kMostSteps));
       row.first = static_cast<std::int32_t>(std::floor(shares->first * row.steps));
       const auto last = static_cast<std::int32_t>(std::ceil(shares->second * row.steps));
       row.count = std::min(last, row.steps) - row.first + 1;

@@ -91,8 +91,8 @@ sub vcl_backend_response {
         return (retry);
     }
     # This server has not received the posted style or table of the tile, which a client may have posted to
-    # another one.
-    if (beresp.status == 404 && bereq.retries < 3) {
+    # another one. If its id is in the query, the status may be 400.
+    if ((beresp.status == 404 || (beresp.status == 400 && bereq.url ~ "[?&=,][0-9a-f]{40}")) && bereq.retries < 3) {
         return (retry);
     }
     if (beresp.status >= 500 || beresp.status == 429) {

@@ -125,6 +125,11 @@ void ChangeLog::end_command() {
   if (telling_.joinable()) telling_.join();
 }
 
+bool ChangeLog::is_comparing() const {
+  const std::lock_guard lock(mutex_);
+  return is_comparing_;
+}
+
 void ChangeLog::note(std::shared_ptr<const Dataset> before, std::shared_ptr<const Dataset> after) {
   if (before->generation() == after->generation()) return;
   auto step = std::make_shared<Step>();
@@ -164,6 +169,7 @@ void ChangeLog::compare_steps() {
       if (is_stopping_) return;
       step = *next();
       step->is_taken = true;
+      is_comparing_ = true;
     }
     std::vector<ChangedLayer> layers = compare(*step);
     {
@@ -175,6 +181,7 @@ void ChangeLog::compare_steps() {
       }
       step->layers = std::move(layers);
       step->is_compared = true;
+      is_comparing_ = false;
       step->before = nullptr;
       step->after = nullptr;
     }

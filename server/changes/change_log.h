@@ -63,6 +63,9 @@ class ChangeLog {
 
   /// Terminates a running command and waits for that; no other one is started.
   void end_command();
+  /// Whether two states are being compared, which cannot be interrupted. After end_command(), no
+  /// other comparison starts.
+  bool is_comparing() const;
 
   ZoomRange zooms() const { return options_.zooms; }
 
@@ -95,6 +98,7 @@ class ChangeLog {
   std::condition_variable wake_;
   std::deque<std::shared_ptr<Step>> steps_;
   std::optional<Sum> untold_;  // not yet passed to the command
+  bool is_comparing_ = false;
   bool is_stopping_ = false;
   std::thread comparing_;
   std::thread telling_;  // runs if there is a command

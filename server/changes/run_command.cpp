@@ -58,11 +58,13 @@ class Spawning {
   Spawning(const Spawning&) = delete;
   Spawning& operator=(const Spawning&) = delete;
 
-  /// Starts it in its own process group, with no signals blocked, and its output redirected to
-  /// standard error.
+  /// Starts it in its own process group, with no signals blocked, its output redirected to standard
+  /// error, and no other open files: with the sockets of the server, a command would keep open the
+  /// connections that the server closes, and the port after the server has ended.
   pid_t start(const std::string& command, int input, char* const* environment) {
     posix_spawn_file_actions_adddup2(&actions_, input, STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
     posix_spawnattr_setflags(
         &attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
     posix_spawnattr_setpgroup(&attributes_, 0);

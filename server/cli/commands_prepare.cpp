@@ -210,20 +210,36 @@ void prepare_parts(const LayerConfig& layer, const LoadOptions& how, const PartR
   if (range.is_all()) join(files, (folder / (layer.name + "-overview" + kExtension)).string());
 }
 
+/// The file of an overview in that folder: one among these files, which the new one replaces, as
+/// there can be only one beside the parts.
+std::filesystem::path overview_in(const std::filesystem::path& folder,
+                                  const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    if (!is_prepared_file(file)) continue;
+    const auto part = read_prepared_summary(file).part;
+    const auto beside = std::filesystem::absolute(file).parent_path();
+    std::error_code error;
+    if (part && part->is_overview() && std::filesystem::equivalent(beside, folder, error)) {
+      return file;
+    }
+  }
+  return folder / (std::string("overview") + kExtension);
+}
+
 int run_join(const PrepareArguments& arguments) {
   if (!arguments.files.empty()) throw UsageError("--join takes parts and no FILE");
   if (!arguments.part.empty()) throw UsageError("--join and --part exclude each other");
-  std::filesystem::path output = arguments.output;
-  if (output.extension() != kExtension) {
-    make_folder(arguments.output);
-    output /= std::string("overview") + kExtension;
-  }
   std::vector<std::string> files;
   for (const std::string& name : arguments.join) {
     for (const std::string& file :
          is_pattern_of_files(name) ? files_of_pattern(name) : std::vector<std::string>{name}) {
       files.push_back(file);
     }
+  }
+  std::filesystem::path output = arguments.output;
+  if (output.extension() != kExtension) {
+    make_folder(arguments.output);
+    output = overview_in(output, files);
   }
   join(files, output.string());
   return 0;

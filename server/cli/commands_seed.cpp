@@ -222,11 +222,13 @@ Work prepare_work(const SeedArguments& arguments, const Config& config) {
   return work;
 }
 
-int tell_estimate(const Work& work, Seeder& seeder) {
+int tell_estimate(const Work& work, Seeder& seeder, bool is_update) {
   const auto estimate = seeder.estimate(work.range, kSecondsOfSample);
   const std::uint64_t tiles = work.plan.count();
   const bool is_all = work.range.end - work.range.first == work.jobs.jobs.size();
-  fmt::print("tiles to be drawn       {}\n", number_words(estimate.figures.drawn));
+  fmt::print("tiles to be drawn       {}\n",
+             number_words(estimate.figures.drawn - estimate.reused));
+  if (is_update) fmt::print("as they were            {}\n", number_words(estimate.reused));
   fmt::print("of one colour           {}\n", number_words(estimate.figures.alone));
   if (is_all) {
     const std::uint64_t looked_at = estimate.figures.drawn + estimate.figures.alone;
@@ -257,8 +259,9 @@ void make_archive(const std::vector<std::string>& logs, const std::string& outpu
 
 void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder) {
   const std::string path = log_path(arguments);
-  const SeedLogHead head{work.plan.identity(work.renderer), work.jobs.jobs.size(), work.range,
-                         part_of(arguments), describe(work.request, *work.dataset)};
+  const SeedLogHead head{work.plan.identity(work.renderer, work.labels->identity_of_fonts()),
+                         work.jobs.jobs.size(), work.range, part_of(arguments),
+                         describe(work.request, *work.dataset)};
   SeedLog log(path, head);
   double done = 0;
   for (const std::uint64_t job : log.done()) done += work.jobs.jobs[job].cost;
@@ -290,6 +293,7 @@ int print_jobs(const SeedArguments& arguments) {
   if (!arguments.part.empty() || !arguments.join.empty()) {
     throw UsageError("--jobs writes --part and --join itself");
   }
+  if (arguments.is_dry_run) throw UsageError("--jobs does not go with --dry-run");
   zooms_or_throw(arguments.zooms, kMaxZoom);
   if (kind_of_archive(arguments.output) == ArchiveKind::folder) {
     throw UsageError("--jobs needs an --output that ends in .pmtiles or .mbtiles");
@@ -328,7 +332,7 @@ int run_seed(const SeedArguments& arguments) {
     find_known = [&earlier](const Digest& fingerprint) { return earlier->find(fingerprint); };
   }
   Seeder seeder(work.plan, work.jobs, std::move(work.renderers), work.labels, find_known);
-  if (arguments.is_dry_run) return tell_estimate(work, seeder);
+  if (arguments.is_dry_run) return tell_estimate(work, seeder, !arguments.update.empty());
   seed_into(arguments, work, seeder);
   if (!arguments.part.empty()) return 0;
   make_archive({log_path(arguments)}, arguments.output, options);

@@ -421,6 +421,10 @@ Dataset::Dataset(std::vector<ServedLayer> layers, std::shared_ptr<const NamedTab
   for (const auto& [name, named] : this->tables()) {
     hash.add(name);
     hash.add(named.table->id());
+    for (const auto& [language, table] : named.languages) {
+      hash.add(language);
+      hash.add(table->id());
+    }
   }
   generation_ = hash.hex();
 }

@@ -96,7 +96,7 @@ std::optional<ServedLayer> LiveLayer::patch(std::span<const std::int64_t> ids) {
   LayerChanges changes = patcher_->apply({reading->ids, features});
   is_worn_ = false;
   changed_.insert(ids.begin(), ids.end());
-  take_step(std::move(changes), revision_of(features));
+  take_step(std::move(changes), *reading);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   spdlog::info(fmt::format("layer \"{}\": {} features have changed, {} were rebuilt, {:.0f} ms",
                            config_.name, ids.size(), features.features().size(), took.count()));
@@ -116,17 +116,24 @@ std::optional<ServedLayer> LiveLayer::join_patches() {
   if (!reading) return std::nullopt;
   patcher_->apply({reading->ids, *reading->features.layer});
   is_worn_ = false;
-  take_step({}, changed.size());
+  // Nothing should look different, but features are read as they are now: with changes that have
+  // not been reported yet.
+  take_step(std::nullopt, *reading);
   return served_;
 }
 
-void LiveLayer::take_step(LayerChanges changes, std::uint64_t what) {
-  auto step = std::make_shared<ServedLayer::Step>();
-  step->since = served_.revision;
-  step->changes = std::move(changes);
+void LiveLayer::take_step(std::optional<LayerChanges> changes, const Reading& reading) {
+  std::shared_ptr<ServedLayer::Step> step;
+  if (changes) {
+    step = std::make_shared<ServedLayer::Step>();
+    step->since = served_.revision;
+    step->changes = *std::move(changes);
+  }
   ContentHash hash;
   hash.add(served_.revision);
-  hash.add(what);
+  // Which features were replaced: those that were removed are not among the features read.
+  for (const std::int64_t id : reading.ids) hash.add(static_cast<std::uint64_t>(id));
+  hash.add(revision_of(*reading.features.layer));
   hash.add(changes_taken_++);
   served_.revision = hash.value();
   served_.layer = patcher_->now();

@@ -44,7 +44,8 @@ class LiveLayer {
   };
   std::optional<Reading> read_changes(std::span<const std::int64_t> changed) const;
   std::optional<ServedLayer> join_patches();
-  void take_step(LayerChanges changes, std::uint64_t what);
+  /// Without `changes`, the two states have to be compared.
+  void take_step(std::optional<LayerChanges> changes, const Reading& reading);
   LoadedLayer read(std::span<const std::int64_t> ids) const;
 
   LayerConfig config_;

@@ -16,8 +16,10 @@
 namespace trapeze {
 namespace {
 
-// A Shapefile consists of several files, one of which is named.
-constexpr std::array<std::string_view, 4> kBesideShapefile = {".dbf", ".shx", ".prj", ".cpg"};
+// A Shapefile consists of several files, one of which is named. GDAL takes either spelling of the
+// others, whatever that of the named one.
+constexpr std::array<std::string_view, 8> kBesideShapefile = {".dbf", ".shx", ".prj", ".cpg",
+                                                              ".DBF", ".SHX", ".PRJ", ".CPG"};
 
 /// The log into which SQLite may write changes before it transfers them to the file.
 std::string write_ahead_log_of(const std::string& source) {
@@ -49,7 +51,7 @@ void append_files(const std::string& source, std::vector<std::string>& files) {
   if (is_pattern_of_files(source)) return append_parts(source, files);
   files.push_back(source);
   const std::filesystem::path named(source);
-  if (named.extension() != ".shp") {
+  if (named.extension() != ".shp" && named.extension() != ".SHP") {
     files.push_back(write_ahead_log_of(source));
     return;
   }

@@ -223,7 +223,7 @@ Result<std::vector<std::shared_ptr<const Layer>>> layers_at(Point place,
   return layers;
 }
 
-/// The features found, or what is wrong with the style.
+/// The features found, the topmost first, or what is wrong with the style.
 Result<std::vector<FoundFeature>> find_features(const PlaceQuery& request,
                                                 const ServedLayer& served, std::size_t position) {
   const auto query = complete_style(request.style, served.config);
@@ -237,8 +237,10 @@ Result<std::vector<FoundFeature>> find_features(const PlaceQuery& request,
   for (const auto& layer : *layers) {
     const Classing classing = style->classing.over(layer->features());
     const FeatureClassifier classifier(classing, layer->features());
-    for (const std::uint32_t row :
-         features_at(*layer, request.place, level_of(request, *query, served))) {
+    // Features are painted in the order of rows. Those of different parts do not overlap.
+    auto rows = features_at(*layer, request.place, level_of(request, *query, served));
+    std::ranges::reverse(rows);
+    for (const std::uint32_t row : rows) {
       if (classifier.class_of(row) != kNotDrawn) found.push_back({layer, row});
     }
   }

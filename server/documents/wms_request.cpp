@@ -129,6 +129,17 @@ bool is_set(std::span<const QueryPair> query, std::string_view name, std::string
   });
 }
 
+/// As StyleQuery::over(): classing parameters are only meaningful together, so that a query that
+/// has one of them replaces all of the style.
+bool overrides(std::span<const QueryPair> query, const StyleParameter& parameter,
+               std::string_view layer) {
+  return std::ranges::any_of(style_parameters(), [&](const StyleParameter& other) {
+    const bool is_alike = other.id == parameter.id ||
+                          (is_classing_parameter(other.id) && is_classing_parameter(parameter.id));
+    return is_alike && is_set(query, other.name, layer);
+  });
+}
+
 /// Adds the settings of a style for one layer, unless the query has them. Settings for the whole
 /// picture come from the first style that has them.
 void add_style_of(const std::string& layer, const StyleQuery& style,
@@ -137,7 +148,7 @@ void add_style_of(const std::string& layer, const StyleQuery& style,
   const StyleQuery of_layer = StyleQuery().over(style, {&layer, 1});
   for (const StyleSetting& setting : of_layer.settings()) {
     const StyleParameter& parameter = style_parameter(setting.parameter);
-    if (is_set(own, parameter.name, layer)) continue;
+    if (overrides(own, parameter, layer)) continue;
     const ParameterValue* value = style.find(layer, setting.parameter);  // own values come first
     std::string name = parameter.is_per_layer ? fmt::format("{}.{}", layer, parameter.name)
                                               : std::string(parameter.name);
@@ -162,7 +173,10 @@ Result<StyleQuery> style_of(std::vector<QueryPair> query, std::span<const std::s
     if (style == nullptr) return unknown_style("STYLES", names[i]);
     add_style_of(of_layers[i], *style, query);
   }
-  return StyleQuery::parse(query, layers);
+  // Resolves posted tables; the query names no style any more.
+  const auto styled = styles.read(std::move(query));
+  if (!styled) return styled.problem();
+  return styled->style_for(layers);
 }
 
 std::optional<bool> parse_flag(const std::optional<std::string>& text, bool usual) {
@@ -386,9 +400,11 @@ Result<WmsRequest> legend_of(const KeyValuePairs& pairs, const DocumentRequest& 
   const auto scale = scale_of(pairs);
   if (!scale) return scale.problem();
   WmsLegendRequest legend{{}, pairs.others};
-  if (const auto& style = pairs["STYLE"]; style && !is_own_style(*style)) {
-    if (request.styles.find(*style) == nullptr) return unknown_style("STYLE", *style);
-    legend.query.emplace_back("style", *style);
+  if (const auto& asked = pairs["STYLE"]; asked && !is_own_style(*asked)) {
+    const auto style = request.styles.find(*asked);
+    if (style == nullptr) return unknown_style("STYLE", *asked);
+    // As in maps, where all parameters of the query take precedence over the style.
+    for (const std::string& layer : *layers) add_style_of(layer, *style, legend.query);
   }
   const int whole = std::clamp(static_cast<int>(std::lround(*scale)), 1, kMaxScale);
   legend.file = fmt::format("{}{}", fmt::join(*layers, ","),

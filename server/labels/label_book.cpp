@@ -230,6 +230,12 @@ const std::shared_ptr<const Fonts>& LabelBook::fonts_for(const LabelStyle& style
   return named == fonts_.named.end() ? fonts_.usual : named->second;
 }
 
+std::string LabelBook::identity_of_fonts() const {
+  std::string text = fonts_.usual->identity();
+  for (const auto& [name, fonts] : fonts_.named) text += "; " + name + ": " + fonts->identity();
+  return text;
+}
+
 std::shared_ptr<LabelBook::Entry> LabelBook::entry(const std::string& key) {
   const std::lock_guard lock(mutex_);
   if (auto* found = kept_.find(key)) return *found;

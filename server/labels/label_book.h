@@ -86,6 +86,9 @@ class LabelBook {
 
   const std::shared_ptr<const Fonts>& usual_fonts() const { return fonts_.usual; }
 
+  /// Equal for fonts and libraries that draw all labels in the same way.
+  std::string identity_of_fonts() const;
+
   /// The labels that reach into the picture, in drawing order.
   std::vector<DrawnLabel> find(const LabelledView& wanted);
 

@@ -42,6 +42,7 @@ SeedBlockBuilder JobPainter::paint(std::span<const SeedUnit> units) {
   block_ = {};
   contents_.clear();
   of_one_colour_.clear();
+  as_they_were_.clear();
   for (const SeedUnit& unit : units) {
     approach(unit.tile);
     if (unit.is_subtree) {
@@ -131,17 +132,23 @@ void JobPainter::paint_tile(const TileId& tile) {
     return !content && !known;
   };
   Painted painted = paint_whole(plan, fingerprint, is_wanted);
+  const Digest digest = digest_of_hex(fingerprint);
   if (known) {
     painted.bytes = *std::move(known);
-    ++reused_;
+    as_they_were_.insert(digest);
   }
   if (!content) {
     content = block_.add_content(painted.bytes, is_empty(plan, painted.bytes));
-    block_.add_fingerprint(digest_of_hex(fingerprint), *content);
+    block_.add_fingerprint(digest, *content);
     if (painted.hint != TileHint::none) of_one_colour_.insert(*content);
   }
   block_.add_tiles(tile.z, place, *content);
-  ++(of_one_colour_.contains(*content) ? block_.figures.alone : block_.figures.drawn);
+  if (as_they_were_.contains(digest)) {
+    ++reused_;
+    ++block_.figures.drawn;
+  } else {
+    ++(of_one_colour_.contains(*content) ? block_.figures.alone : block_.figures.drawn);
+  }
 }
 
 // As in the server, large tiles are painted in bands.

@@ -35,7 +35,8 @@ class JobPainter {
   /// The tiles of the units. Throws the errors of drawing.
   SeedBlockBuilder paint(std::span<const SeedUnit> units);
 
-  /// How many tiles were not drawn because their bytes were known from an earlier archive.
+  /// How many of the tiles counted as drawn were not, because their bytes were known from an
+  /// earlier archive.
   std::uint64_t reused() const { return reused_; }
 
  private:
@@ -64,6 +65,7 @@ class JobPainter {
   SeedBlockBuilder block_;
   std::map<TileLook, std::uint64_t> contents_;  // content numbers of the block, by look
   std::set<std::uint64_t> of_one_colour_;       // contents of the block
+  std::set<Digest> as_they_were_;  // fingerprints in the block that were found by find_known_
 };
 
 }  // namespace trapeze

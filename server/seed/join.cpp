@@ -74,21 +74,38 @@ void check_place_of_archive(const std::string& path) {
   }
 }
 
+/// For an archive that would have no tiles: directories of PMTiles must not be empty.
+void add_first_tile(const SeedLogs& logs, Runs& runs) {
+  const ZoomRange zooms = logs.archive().zooms;
+  for (int zoom = zooms.first; zoom <= zooms.last; ++zoom) {
+    for (const SeedBlock& block : logs.blocks()) {
+      for (const BlockEntry& entry : block.entries(zoom)) {
+        const BlockContent& content = block.contents()[entry.content];
+        runs.add({zoom, {entry.places.first, 1}, content.digest, block.bytes_of(content)});
+        return;
+      }
+    }
+  }
+}
+
 // A log also has the fingerprints of tiles that are left out.
 void join_into_archive(const SeedLogs& logs, const std::string& path, const JoinOptions& options) {
   const bool is_sparse = options.is_sparse || kind_of_archive(path) == ArchiveKind::folder;
   const auto writer = write_archive(path, logs.archive(), size_of(logs));
   const ZoomRange zooms = logs.archive().zooms;
   Runs runs(*writer);
+  bool has_tiles = false;
   for (int zoom = zooms.first; zoom <= zooms.last; ++zoom) {
     for (const SeedBlock& block : logs.blocks()) {
       for (const BlockEntry& entry : block.entries(zoom)) {
         const BlockContent& content = block.contents()[entry.content];
         if (is_sparse && content.is_empty != 0) continue;
         runs.add({zoom, entry.places, content.digest, block.bytes_of(content)});
+        has_tiles = true;
       }
     }
   }
+  if (!has_tiles && kind_of_archive(path) == ArchiveKind::pmtiles) add_first_tile(logs, runs);
   runs.finish();
   for (const SeedBlock& block : logs.blocks()) {
     for (const BlockFingerprint& item : block.fingerprints()) {

@@ -51,6 +51,25 @@ double crossing_length(const MeshView& mesh, const MeshTrapezoid& trapezoid, con
   return length;
 }
 
+/// The area within the box, exact for trapezoids whose sides do not cross those of the box.
+double covered_area(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box) {
+  const double top = std::max(mesh.vertices[trapezoid.top].y, box.min_y);
+  const double bottom = std::min(mesh.vertices[trapezoid.bottom].y, box.max_y);
+  if (top >= bottom) return 0;
+  const EdgeLine left(mesh, trapezoid.left);
+  const EdgeLine right(mesh, trapezoid.right);
+  const auto width = [&](double y) {
+    return std::clamp<double>(right.x_at(y), box.min_x, box.max_x) -
+           std::clamp<double>(left.x_at(y), box.min_x, box.max_x);
+  };
+  return (bottom - top) * (width(top) + width(bottom)) / 2;
+}
+
+double area_of(const Box& box) {
+  return (static_cast<double>(box.max_x) - box.min_x) *
+         (static_cast<double>(box.max_y) - box.min_y);
+}
+
 /// Whether anything other than polygons is drawn with that zoom's selection.
 bool has_dust_or_edges(const Layer& layer, const LevelSpan& span, const Layer::Selection& selection,
                        const LayerPaint& paint) {
@@ -337,12 +356,17 @@ bool KnownTiles::find_alike(const Drawn& drawn, const LevelSpan& span, const Lay
   return true;
 }
 
+// Boundaries are not all that keeps tiles from being known: patterns and overlaps do so
+// wherever they are, and a feature smaller than a tile does so in a whole tile.
 std::optional<KnownTiles::Estimate> KnownTiles::estimate() const {
   const Step& step = steps_[static_cast<std::size_t>(tile_.z)];
   Estimate sum;
   for (int zoom = first_zoom(tile_); zoom <= plan_.zooms().last; ++zoom) {
     const auto side = static_cast<double>(TileId{zoom, 0, 0}.side());
-    double tiles = 0;
+    const TilePlan& plan = plan_.at(zoom);
+    const bool is_something = !look_at_zoom(zoom).has_value();
+    const auto most = static_cast<double>(places_below(tile_, zoom).count);
+    double tiles = plan.debug.any() ? most : 0;
     for (std::size_t k = 0; k < drawn_.size(); ++k) {
       const LayerPaint* paint = drawn_[k].paints[static_cast<std::size_t>(zoom)];
       if (paint == nullptr) continue;
@@ -352,16 +376,34 @@ std::optional<KnownTiles::Estimate> KnownTiles::estimate() const {
       const std::span<const Lifespan> lifespans = layer.lifespans();
       const Box box = widened(tile_, 0);
       double length = 0;
+      double area = 0;
+      double features = 0;
+      std::uint32_t last_row = Layer::kNoFeature;
       for (const std::uint32_t i : step.spans[k].polygons()) {
         if (!lifespans[i].contains(paint->level)) continue;
-        length += crossing_length(layer.mesh(), layer.mesh().trapezoids[i], box);
+        const MeshTrapezoid& trapezoid = layer.mesh().trapezoids[i];
+        length += crossing_length(layer.mesh(), trapezoid, box);
+        area += covered_area(layer.mesh(), trapezoid, box);
+        const std::uint32_t row = layer.feature_of(i);
+        if (row != last_row) ++features;
+        last_row = row;
         ++sum.trapezoids;
       }
       tiles += length / side;
+      if (!is_something) continue;
+      const GrainIndex::Births births =
+          births_of_dust(*paint, trapeze::selection_of(plan, *paint, plan.view));
+      tiles += features + static_cast<double>(std::ranges::count_if(
+                              step.spans[k].grains(), [&](const FeatureGrain* grain) {
+                                return births.contains(grain->born);
+                              }));
+      if (paint->style.pattern.kind != PatternKind::none) {
+        tiles += area / (side * side);
+      } else if (!layer.overlaps().empty()) {
+        tiles += std::max(area - area_of(box), 0.0) / (side * side);
+      }
     }
-    const bool is_something = !look_at_zoom(zoom).has_value();
-    sum.tiles += std::min(tiles + (is_something ? 1 : 0),
-                          static_cast<double>(places_below(tile_, zoom).count));
+    sum.tiles += std::min(tiles + (is_something ? 1 : 0), most);
   }
   return sum;
 }

@@ -4,6 +4,8 @@
 #include <sqlite3.h>
 
 #include <cerrno>
+#include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -50,6 +52,7 @@ MbtilesWriter::MbtilesWriter(const std::string& path, const ArchiveDescription& 
   const int result = sqlite3_open(temporary_.path().c_str(), &database);
   database_.reset(database);
   if (result != SQLITE_OK) fail();
+  sort_beside_archive();
   execute(kBegin);
   add_content_ = prepare("INSERT INTO images VALUES (?1, ?2)");
   add_tile_ = prepare("INSERT INTO map VALUES (?1, ?2, ?3, ?4)");
@@ -61,6 +64,15 @@ MbtilesWriter::~MbtilesWriter() = default;
 void MbtilesWriter::fail() const {
   throw std::runtime_error(
       fmt::format("cannot write {}: {}", path_, sqlite3_errmsg(database_.get())));
+}
+
+// Indexes are sorted in temporary files, which SQLite removes as soon as they are open. Its usual
+// folders for them may be too small, or read-only as in a container.
+void MbtilesWriter::sort_beside_archive() {
+  const std::string folder = std::filesystem::absolute(path_).parent_path().string();
+  const std::unique_ptr<char, decltype(&sqlite3_free)> sql(
+      sqlite3_mprintf("PRAGMA temp_store_directory = %Q", folder.c_str()), sqlite3_free);
+  execute(sql.get());
 }
 
 void MbtilesWriter::execute(const char* sql) {

@@ -37,6 +37,7 @@ class MbtilesWriter final : public ArchiveWriter {
   using Statement = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
 
   [[noreturn]] void fail() const;
+  void sort_beside_archive();
   void execute(const char* sql);
   Statement prepare(const char* sql);
   void run(const Statement& statement);

@@ -15,8 +15,8 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint64_t kBeginOfTiles = 16'384;  // the first request of readers ends here
-constexpr std::uint64_t kMostOfRoot = kBeginOfTiles - kPmtilesHeaderBytes;
-constexpr std::size_t kLeastLeaf = 4096;  // entries
+constexpr std::uint64_t kMostOfRoot = kBeginOfTiles - kPmtilesHeaderBytes - 1;  // as specified
+constexpr std::size_t kLeastLeaf = 4096;                                        // entries
 constexpr std::size_t kBuffer = std::size_t{1} << 20;
 constexpr std::uint64_t kMostRun = std::numeric_limits<std::uint32_t>::max();
 

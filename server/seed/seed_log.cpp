@@ -49,7 +49,8 @@ std::string text_of(const SeedLogHead& head) {
                      {"scale", archive.scale},
                      {"layers", archive.layers},
                      {"style", archive.style}};
-  std::string text = std::string(kLogMark) + json.dump();
+  std::string text =
+      std::string(kLogMark) + json.dump(-1, ' ', false, Json::error_handler_t::replace);
   const std::size_t size =
       (text.size() + 1 + kBlockAlignment - 1) / kBlockAlignment * kBlockAlignment;
   text.append(size - 1 - text.size(), ' ').push_back('\n');
@@ -116,19 +117,26 @@ SeedLog::SeedLog(const std::string& path, const SeedLogHead& head)
     const std::string text = text_of(head);
     struct stat status {};
     if (fstat(file_, &status) != 0) fail_to_write(path, errno);
-    // A shorter file was interrupted before any block was written.
-    if (static_cast<std::size_t>(status.st_size) <= text.size()) {
-      append(std::as_bytes(std::span(text)));
-      if (ftruncate(file_, static_cast<off_t>(end_)) != 0) fail_to_write(path, errno);
-      return;
+    const auto size = static_cast<std::size_t>(status.st_size);
+    std::string begin(std::min(size, text.size()), '\0');
+    if (pread(file_, begin.data(), begin.size(), 0) != static_cast<ssize_t>(begin.size())) {
+      refuse_log(path, "cannot be read");
     }
-    const MappedFile mapped(path);
-    const std::span<const std::byte> bytes = mapped.bytes();
-    if (!std::ranges::equal(bytes.first(text.size()), std::as_bytes(std::span(text)))) {
+    if (!begin.starts_with(kLogMark.substr(0, begin.size()))) {
+      refuse_log(path, "this is not a part of a seeding: use another --output");
+    }
+    if (!text.starts_with(begin)) {
       refuse_log(path,
                  "this is the state of a different seeding: data, options or program have changed. "
                  "Remove it to start again, or use another --output");
     }
+    // A shorter file was interrupted before any block was written.
+    if (size <= text.size()) {
+      append(std::as_bytes(std::span(text)));
+      return;
+    }
+    const MappedFile mapped(path);
+    const std::span<const std::byte> bytes = mapped.bytes();
     end_ = for_each_block(bytes, text.size(), [this](const SeedBlock& block) {
       if (done_.insert(block.job()).second) figures_.add(block.figures());
     });

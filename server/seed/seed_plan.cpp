@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "render/picture/webp.h"
 #include "server/base/content_hash.h"
 #include "server/tiles/painted_tile.h"
 
@@ -79,11 +80,18 @@ std::uint64_t SeedPlan::count() const {
   return tiles;
 }
 
-std::string SeedPlan::identity(const std::string& renderer) const {
+std::string SeedPlan::identity(const std::string& renderer, const std::string& fonts) const {
   ContentHash hash;
   hash.add(kPictureVersion);
   hash.add(renderer);
   for (const TilePlan& plan : plans_) hash.add(plan.key());
+  const auto has_text = [](const TilePlan& plan) {
+    return !plan.labels.empty() || plan.debug.any();
+  };
+  if (std::ranges::any_of(plans_, has_text)) hash.add(fonts);
+  if (plans_.front().format == TileFormat::webp) {
+    hash.add(static_cast<std::uint64_t>(webp_version()));
+  }
   const Columns& wanted = columns(zooms_.last);
   for (const std::uint32_t end : {wanted.first_x, wanted.last_x, wanted.first_y, wanted.last_y}) {
     hash.add(end);

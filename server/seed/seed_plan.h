@@ -45,8 +45,8 @@ class SeedPlan {
   std::uint64_t count() const;
 
   /// Hex digits that are equal only for plans that give the same bytes: they cover data, style,
-  /// zooms, bounds, format and renderer.
-  std::string identity(const std::string& renderer) const;
+  /// zooms, bounds, format and renderer, and the fonts if there is text in the tiles.
+  std::string identity(const std::string& renderer, const std::string& fonts) const;
 
  private:
   struct Columns {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <mutex>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -17,11 +18,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// The layers that are drawn or labelled at any of the zooms.
+std::set<std::size_t> layers_of(const SeedPlan& plan) {
+  std::set<std::size_t> layers;
+  for (int zoom = plan.zooms().first; zoom <= plan.zooms().last; ++zoom) {
+    for (const LayerPaint& paint : plan.at(zoom).layers) layers.insert(paint.layer);
+    for (const LabelledLayer& labelled : plan.at(zoom).labels) layers.insert(labelled.layer);
+  }
+  return layers;
+}
+
 /// Tiles drawn while their file was overwritten may contain anything.
 void refuse_damaged(const SeedPlan& plan) {
-  const TilePlan& any = plan.at(plan.zooms().last);
-  for (const LayerPaint& paint : any.layers) {
-    const ServedLayer& layer = any.dataset->layers_on_all_grids()[paint.layer];
+  const Dataset& dataset = *plan.at(plan.zooms().last).dataset;
+  for (const std::size_t number : layers_of(plan)) {
+    const ServedLayer& layer = dataset.layers_on_all_grids()[number];
     if (layer.is_whole()) continue;
     throw std::runtime_error(fmt::format(
         "{} was modified while it was read; run `trapeze prepare` again", layer.report.path));
@@ -108,10 +119,12 @@ Seeder::Estimate Seeder::estimate(const JobRange& range, double seconds) {
         job += order[next++];
       }
       const auto begin = Clock::now();
+      const std::uint64_t reused = painters_[thread].reused();
       const SeedBlockBuilder block = painters_[thread].paint(jobs_.units_of(jobs_.jobs[job]));
       const double took = std::chrono::duration<double>(Clock::now() - begin).count();
       const std::lock_guard lock(mutex);
       sum.figures.add(block.figures);
+      sum.reused += painters_[thread].reused() - reused;
       sum.bytes += static_cast<double>(block.bytes(job).size());
       sum.seconds += took;
       cost += jobs_.jobs[job].cost;
@@ -123,6 +136,7 @@ Seeder::Estimate Seeder::estimate(const JobRange& range, double seconds) {
   };
   sum.figures.drawn = scaled(sum.figures.drawn);
   sum.figures.alone = scaled(sum.figures.alone);
+  sum.reused = scaled(sum.reused);
   sum.bytes *= factor;
   sum.seconds *= factor / static_cast<double>(painters_.size());
   return sum;

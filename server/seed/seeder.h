@@ -39,8 +39,9 @@ class Seeder {
 
   struct Estimate {
     SeedFigures figures;
-    double bytes = 0;    // of distinct contents, without directories
-    double seconds = 0;  // on all threads
+    std::uint64_t reused = 0;  // see SeedProgress
+    double bytes = 0;          // of distinct contents, without directories
+    double seconds = 0;        // on all threads
   };
   /// Estimates the results for the jobs of the range: runs some of them for about that many
   /// seconds, and extrapolates to the others. If there is time to run all, the figures are exact.

@@ -47,7 +47,14 @@ void DocumentWorker::submit(std::shared_ptr<const Dataset> dataset, std::string 
 }
 
 void DocumentWorker::work() {
-  while (const auto order = next_order()) order->callback(answer(*order));
+  while (const auto order = next_order()) {
+    // Callbacks may plan tiles, and memory may run out; then the connection is closed.
+    try {
+      order->callback(answer(*order));
+    } catch (const std::exception& error) {
+      spdlog::error(fmt::format("{}: {}", order->key, error.what()));
+    }
+  }
 }
 
 std::optional<DocumentWorker::Order> DocumentWorker::next_order() {

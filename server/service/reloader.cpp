@@ -345,6 +345,8 @@ void Reloader::forget_retired() {
       if (served.untested != nullptr) {
         meshes.push_back({served.untested, served.untested->mesh().id});
       }
+      // Of a live layer, what was read in full outlives the dataset in which it was served.
+      if (served.whole != nullptr) meshes.push_back({served.whole, served.whole->mesh().id});
       if (served.parts == nullptr) continue;
       const auto add = [&meshes](const PreparedPart& part) {
         if (const auto layer = part.layer_if_open()) meshes.push_back({layer, layer->mesh().id});

@@ -236,8 +236,9 @@ void Service::run() {
 }
 
 bool Service::finish() {
-  if (reloader_->end(kEnd) && !tiles_->is_placing()) return true;
+  const bool has_read = reloader_->end(kEnd) && !tiles_->is_placing();
   if (changes_ != nullptr) changes_->end_command();
+  if (has_read && (changes_ == nullptr || !changes_->is_comparing())) return true;
   if (access_log_ != nullptr) access_log_->flush();
   return false;
 }

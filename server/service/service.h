@@ -46,8 +46,9 @@ class Service {
   void reload();
 
   /// Call after run(). Ends all background work. Returns false if layers are still being read or
-  /// labels placed, which cannot be interrupted. In that case the service must not be destroyed;
-  /// but everything it has logged has been written, and no command for changes runs any more.
+  /// compared, or labels placed, which cannot be interrupted. In that case the service must not be
+  /// destroyed; but everything it has logged has been written, and no command for changes runs any
+  /// more.
   bool finish();
 
   /// Whether layers are being read at the moment.

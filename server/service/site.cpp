@@ -48,7 +48,7 @@ constexpr std::uint64_t kDocumentCost = 500'000;  // in units of drawing_cost():
 // In the same units. After such a picture, a worker frees its memory: about 100 MB.
 constexpr std::uint64_t kGiantTile = 4'000'000;
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint64_t kMostToldPixels = 1 << 22;  // of a picture with an error message
+constexpr std::uint64_t kMostToldPixels = 1 << 21;  // of a picture with an error message
 constexpr int kClientGone = 499;                    // as nginx logs it; no client reads it
 
 // An address may post an eighth of the memory for styles, and as much again each hour, so that

@@ -111,14 +111,17 @@ std::string TilePlan::key() const {
   }
   for (const LabelledLayer& layer : labels) {
     const ServedLayer& served = dataset->layers_on_all_grids()[layer.layer];
-    key += fmt::format(" label {:016x} {:d} {} {}", served.revision, layer.is_drawn,
-                       layer.style->key(), layer.classing.is_plain() ? "" : layer.classing.key());
+    // Where labels are placed depends on the exact tolerance, and on layers that are not painted.
+    key += fmt::format(" label {:016x} {:d} {} {} {} {}", served.revision, layer.is_drawn,
+                       layer.tolerance, layer.min_zoom, layer.style->key(),
+                       layer.classing.is_plain() ? "" : layer.classing.key());
   }
   if (format == TileFormat::webp) key += " webp";
   if (quality == Quality::exact) key += " exact";
   if (debug.any())
     key += fmt::format(" debug {:d}{:d}{:d}{:d}{:d}", debug.faces, debug.mesh, debug.vertices,
                        debug.junctions, debug.tile);
+  if (debug.tile) key += " " + caption;
   return key;
 }
 

@@ -7,6 +7,7 @@
 #include <exception>
 #include <functional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "server/base/heap.h"
@@ -17,11 +18,11 @@ namespace {
 
 // If notifying one client fails, usually for lack of memory, the others must still be answered.
 template <class Action>
-void attempt(const Action& tell) {
+void attempt(const Action& tell, std::string_view failure = "a tile cannot be answered") {
   try {
     tell();
   } catch (const std::exception& error) {
-    spdlog::error(fmt::format("a tile cannot be answered: {}", error.what()));
+    spdlog::error(fmt::format("{}: {}", failure, error.what()));
   }
 }
 
@@ -102,10 +103,12 @@ void TileService::place_labels() {
     is_placing_ = true;
     lock.unlock();
     // If it fails, for lack of memory, the worker that draws the tile tries again.
-    attempt([&] {
-      const TilePlan& plan = flight->order.plan;
-      options_.labels->find({*plan.dataset, plan.labels, plan.view, plan.scale});
-    });
+    attempt(
+        [&] {
+          const TilePlan& plan = flight->order.plan;
+          options_.labels->find({*plan.dataset, plan.labels, plan.view, plan.scale});
+        },
+        "labels cannot be placed");
     lock.lock();
     is_placing_ = false;
     queue_placed(flight);
@@ -127,12 +130,13 @@ void TileService::queue_placed(const std::shared_ptr<Flight>& placed) {
 }
 
 std::shared_ptr<TileService::Flight> TileService::take_late() {
-  const auto late = std::ranges::find_if(
-      awaiting_labels_,
-      [](const std::shared_ptr<Flight>& flight) { return flight->cancellation.is_over(); });
-  if (late == awaiting_labels_.end()) return nullptr;
-  std::shared_ptr<Flight> flight = std::move(*late);
-  awaiting_labels_.erase(late);
+  if (awaiting_labels_.empty()) return nullptr;
+  // The first one has waited longest. The deadline of its first client counts: that of the last one
+  // would move on for as long as others request the tile, however long placing takes.
+  const auto waited = Clock::now() - awaiting_labels_.front()->submitted;
+  if (waited < options_.deadline) return nullptr;
+  std::shared_ptr<Flight> flight = std::move(awaiting_labels_.front());
+  awaiting_labels_.pop_front();
   return flight;
 }
 
@@ -211,8 +215,12 @@ TileService::Ticket TileService::submit(Order order, Callback callback, Holds ho
         queue.pop_back();  // otherwise others would join a flight that no worker takes
         throw;
       }
-      wake_.notify_one();
-      if (!is_placed) labels_wanted_.notify_one();
+      if (is_placed) {
+        wake_.notify_one();
+      } else {
+        labels_wanted_.notify_one();
+        wake_.notify_all();  // all idle workers look for late tiles: any of them may soon be busy
+      }
       return ticket;
     }
   }
@@ -330,12 +338,15 @@ bool TileService::take(std::size_t most, Work& work) {
   return true;
 }
 
+// What is late comes first: under load, there is always something else to take.
 void TileService::wait_for_work(std::unique_lock<std::mutex>& lock) {
-  while (!is_stopping_ && queue_.empty() && !may_take_dear() && bands_.empty()) {
+  while (!is_stopping_) {
     if (const auto flight = take_late()) {
       lock.unlock();
       land(flight, {TileOutcome::placing, {}});
       lock.lock();
+    } else if (!queue_.empty() || may_take_dear() || !bands_.empty()) {
+      return;
     } else if (awaiting_labels_.empty()) {
       wake_.wait(lock);
     } else {
@@ -541,6 +552,8 @@ void TileService::land(const std::shared_ptr<Flight>& flight, TileAnswer answer)
     const std::lock_guard lock(mutex_);
     if (answer.outcome == TileOutcome::late && is_stopping_) {
       answer.outcome = TileOutcome::saturated;
+    } else if (answer.outcome == TileOutcome::late && flight->wanted == 0) {
+      answer.outcome = TileOutcome::withdrawn;
     }
     forget(flight);
     askers.swap(flight->askers);

@@ -75,6 +75,7 @@ class RowHandler {
   Result<ValueTable> finish() && {
     if (problem_) return std::move(*problem_);
     if (!builder_) return Problem{400, "The table is empty."};
+    if (form_ == Form::objects && !has_values_) return no_values();
     return std::move(*builder_).finish();
   }
 
@@ -127,17 +128,18 @@ class RowHandler {
     return true;
   }
 
-  // If the columns have no names, the first members of the first row name them.
+  // If the columns have no names, the first members name them: the key in the first row, the value
+  // in the first row that has one, since many programs leave out members that are null.
   bool take_member(std::string text) {
-    if (row_ == 1) {
-      if (columns_.key.empty() && name_ != columns_.value) {
-        columns_.key = name_;
-      } else if (columns_.value.empty() && name_ != columns_.key) {
-        columns_.value = name_;
-      }
+    if (columns_.key.empty() && name_ != columns_.value) {
+      columns_.key = name_;
+    } else if (columns_.value.empty() && name_ != columns_.key) {
+      columns_.value = name_;
+      if (builder_) builder_->name_values(name_of(columns_.value, "value"));
     }
     const bool is_key = name_ == columns_.key;
     if (!is_key && name_ != columns_.value) return true;
+    has_values_ |= !is_key;
     auto& place = is_key ? key_text_ : value_text_;
     if (place) return fail(fmt::format("Row {} of the table has \"{}\" twice.", row_, name_));
     place = std::move(text);
@@ -158,13 +160,23 @@ class RowHandler {
     return add(*key_text_, value_text_.value_or(std::string()));
   }
 
+  static std::string name_of(const std::string& given, const char* usual) {
+    constexpr std::size_t kMaxNameBytes = 128;
+    return given.empty() ? std::string(usual) : given.substr(0, kMaxNameBytes);
+  }
+
+  /// A table without a single value has most likely a mistyped column.
+  Problem no_values() const {
+    if (columns_.value.empty()) {
+      return {400, fmt::format("No row of the table has a value beside \"{}\".", columns_.key)};
+    }
+    return {400, fmt::format("No row of the table has \"{}\".", columns_.value), "value",
+            columns_.value, "the name of a member of the rows"};
+  }
+
   bool add(std::string_view key, std::string_view value) {
     if (!builder_) {
-      constexpr std::size_t kMaxNameBytes = 128;
-      const auto name = [](const std::string& given, const char* usual) {
-        return given.empty() ? std::string(usual) : given.substr(0, kMaxNameBytes);
-      };
-      builder_.emplace(ValueNames{name(columns_.key, "key"), name(columns_.value, "value")},
+      builder_.emplace(ValueNames{name_of(columns_.key, "key"), name_of(columns_.value, "value")},
                        max_rows_);
     }
     auto problem = builder_->add(key, value, row_);
@@ -179,6 +191,7 @@ class RowHandler {
   Form form_ = Form::unknown;
   int depth_ = 0;
   std::size_t row_ = 0;
+  bool has_values_ = false;  // in Form::objects: whether a row had the value, even if null
   // For the row that is being read:
   std::string key_;   // in Form::members
   std::string name_;  // of a member

@@ -97,12 +97,14 @@ struct Places {
 Problem no_such_column(std::string_view parameter, const std::string& name,
                        const std::vector<std::string>& names) {
   constexpr std::size_t kMostNamed = 20;
-  const auto named = std::min(names.size(), kMostNamed);
+  std::vector<std::string> known;
+  for (const std::string& each : names) known.push_back(each.substr(0, kMaxNameBytes));
+  const auto named = std::min(known.size(), kMostNamed);
   const std::string list = fmt::format(
-      "{}{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(named), ", "),
-      named < names.size() ? ", ..." : "");
+      "{}{}", fmt::join(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+      named < known.size() ? ", ..." : "");
   return {400,
-          fmt::format("The table has no column \"{}\"{}", name, suggestion_or_stop(name, names)),
+          fmt::format("The table has no column \"{}\"{}", name, suggestion_or_stop(name, known)),
           std::string(parameter), name, list};
 }
 
@@ -145,7 +147,7 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
   if (!*has_names) return Problem{400, "The table is empty."};
   std::vector<std::string> names;
   for (const std::string& name : reader.fields()) {
-    names.emplace_back(without_blanks(name).substr(0, kMaxNameBytes));
+    names.emplace_back(without_blanks(name));
   }
   const auto places = find_places(names, options.columns);
   if (!places) return places.problem();
@@ -155,8 +157,9 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
                                     "value: add a header line such as \"key,value\".",
                                     names[places->value])};
   }
-  ValueTableBuilder builder({names[places->key], names[places->value]}, options.max_rows,
-                            delimiter == ';');
+  ValueTableBuilder builder(
+      {names[places->key].substr(0, kMaxNameBytes), names[places->value].substr(0, kMaxNameBytes)},
+      options.max_rows, delimiter == ';');
   builder.reserve(static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1, text.size());
   while (true) {
     const auto has_record = reader.next();

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/layer/feature_table.h"
@@ -73,6 +74,8 @@ class ValueTableBuilder {
   /// Rows beyond `max_rows` are refused. With `has_decimal_commas`, "1,5" is a number.
   ValueTableBuilder(ValueNames names, std::size_t max_rows, bool has_decimal_commas = false);
 
+  /// For a source that names the values only after some rows without any.
+  void name_values(std::string name) { table_.names_.value = std::move(name); }
   /// Reserves memory for that many rows and bytes of text in them.
   void reserve(std::size_t rows, std::size_t bytes);
   /// `place` identifies the row for people, such as 7 for "line 7". Spaces around key and value are

@@ -68,7 +68,8 @@ struct ExportReport {
 /// grow()). With either, the whole source is held in memory.
 ///
 /// Attributes keep their names and types. Values that the format cannot hold (lists, times of day)
-/// become text as in AttributeReader, and names that would clash get a number. The field
+/// become text as in AttributeReader, and names that would clash get a number. Before 3.8, GDAL
+/// writes text that is a JSON array or object as such into GeoJSON. The field
 /// `trapeze_id` holds the source's id of each feature; for a source with several layers,
 /// `trapeze_layer` holds its layer. The order is that of the source, except in FlatGeobuf, which
 /// sorts by place. The output does not depend on the number of threads.

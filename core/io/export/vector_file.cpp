@@ -98,6 +98,8 @@ void VectorFile::create_layer(ExportCrs crs, const std::string& fid, const std::
     options.SetNameValue("GEOMETRY_NAME", geometry.c_str());
   } else if (std::string_view(format_.driver) == "GeoJSON") {
     options.SetNameValue("COORDINATE_PRECISION", "15");  // the full precision of a double
+    // Text such as "[1]" stays text; GDAL before 3.8 does not know this and writes an array.
+    options.SetNameValue("AUTODETECT_JSON_STRINGS", "NO");
   }
   OGRSpatialReference reference = reference_of(crs);
   const std::string name = fs::path(path_).stem().string();

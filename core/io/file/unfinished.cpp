@@ -7,6 +7,7 @@
 #include <csignal>
 #include <filesystem>
 #include <mutex>
+#include <random>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -29,13 +30,15 @@ Register& all_unfinished() {
   return all;
 }
 
-/// The process id in a name that consists of `prefix` and a number; 0 for any other name.
+/// The process id in a name that consists of `prefix`, a number and possibly a dash with anything
+/// behind it; 0 for any other name.
 pid_t process_in(std::string_view name, std::string_view prefix) {
   if (!name.starts_with(prefix)) return 0;
   name.remove_prefix(prefix.size());
   pid_t process = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
-  return error == std::errc() && end == name.data() + name.size() && process > 0 ? process : 0;
+  const bool is_all = end == name.data() + name.size() || *end == '-';
+  return error == std::errc() && is_all && process > 0 ? process : 0;
 }
 
 bool is_gone(pid_t process) {
@@ -58,7 +61,10 @@ void remove_left_over(const fs::path& prefix) {
 
 std::string name_for_this_process(const fs::path& prefix) {
   remove_left_over(prefix);
-  return prefix.string() + std::to_string(getpid());
+  // In another container that writes the same output, a process may have the same id: with the same
+  // name, each would take what the other has written so far for its own finished file.
+  std::random_device random;
+  return prefix.string() + std::to_string(getpid()) + '-' + std::to_string(random());
 }
 
 /// Another thread may keep writing into the folder until the end, so removal is repeated.

@@ -7,16 +7,17 @@
 
 namespace trapeze {
 
-/// A temporary name beside an output, containing the process id. Removes leftovers of a killed
-/// process for the same output, if no process has that id any more. The destructor removes whatever
-/// has the name: the file, or the folder with its contents.
+/// A temporary name beside an output, containing the process id and a random number. Removes
+/// leftovers of a killed process for the same output, if no process has that id any more. The
+/// destructor removes whatever has the name: the file, or the folder with its contents.
 ///
 /// Thread-safety: different objects may be used by different threads.
 class Unfinished {
  public:
-  /// OUTPUT.tmp.PID; the file is not created yet.
+  /// OUTPUT.tmp.PID-RANDOM; the file is not created yet.
   static Unfinished file_beside(const std::string& output);
-  /// .OUTPUT.tmp.PID, a new and empty folder. Throws std::system_error if it cannot be created.
+  /// .OUTPUT.tmp.PID-RANDOM, a new and empty folder. Throws std::system_error if it cannot be
+  /// created.
   static Unfinished folder_beside(const std::string& output);
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;

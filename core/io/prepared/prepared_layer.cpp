@@ -17,6 +17,7 @@
 #include "core/io/file/byte_stream.h"
 #include "core/io/file/mapped_file.h"
 #include "core/io/file/prepared_file.h"
+#include "core/io/load/source_division.h"
 #include "core/io/prepared/build_fingerprint.h"
 #include "core/io/source/target_grid.h"
 #include "core/labels/label_anchors.h"
@@ -228,7 +229,8 @@ void read_part(ByteReader& in, Description& description) {
   part.division = in.take<std::uint64_t>();
   part.revision_of_parts = in.take<std::uint64_t>();
   part.first_level = in.take<Level>();
-  if (part.number > part.count || part.count == 0 || part.first_level > kLastLevel) {
+  if (part.number > part.count || part.count == 0 || part.count > kMostParts ||
+      part.first_level > kLastLevel) {
     throw std::invalid_argument("the description names a part that there cannot be");
   }
   description.part = part;

@@ -68,6 +68,15 @@ std::string part_words(const PartNumber& number) {
   throw std::runtime_error(path + ": " + words);
 }
 
+/// Whether no file of the source had other contents for one than for the other. On another machine
+/// the source may have had another name: then there is nothing to compare.
+bool are_of_one_state(const SourceStamp& one, const SourceStamp& two) {
+  return std::ranges::all_of(one.files, [&two](const FileStamp& file) {
+    const auto same = std::ranges::find(two.files, file.name, &FileStamp::name);
+    return same == two.files.end() || (same->size == file.size && same->checksum == file.checksum);
+  });
+}
+
 /// Throws if they are not from one division and prepared alike.
 void check_alike(const Part& first, const Part& other) {
   const PartNumber& a = first->number();
@@ -86,7 +95,10 @@ void check_alike(const Part& first, const Part& other) {
   const bool have_fields =
       b.is_overview() ||
       std::ranges::equal(first->summary().fields, other->summary().fields, are_alike);
-  if (a.division != b.division || !have_fields) {
+  // The division knows only ids, boxes and numbers of vertices. An overview names its parts.
+  const bool is_one_state =
+      b.is_overview() || are_of_one_state(first->summary().source, other->summary().source);
+  if (a.division != b.division || !have_fields || !is_one_state) {
     fail(other->path(), "is a part of another source than " + first->path() +
                             ", or of the same one in another state, or selected otherwise");
   }

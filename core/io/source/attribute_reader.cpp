@@ -63,6 +63,8 @@ std::string iso_date(const OGRFeature& feature, int index, OGRFieldType type) {
   std::array<char, 32> date{};
   std::snprintf(date.data(), date.size(), "%04d-%02d-%02d", year, month, day);
   if (type == OFTDate) return date.data();
+  // Otherwise rounded to a minute of 60 seconds.
+  if (second > 59.999F && second < 60) second = 59.999F;
   std::array<char, 32> time{};
   const bool is_whole_second = second == static_cast<float>(static_cast<int>(second));
   std::snprintf(time.data(), time.size(), is_whole_second ? "%02d:%02d:%02.0f" : "%02d:%02d:%06.3f",

@@ -23,6 +23,16 @@ std::string with_number(std::string query, std::int64_t number) {
   return query;
 }
 
+/// The same query with known names of its columns.
+std::string with_names(std::string query) {
+  while (!query.empty() && std::string_view("; \t\r\n").find(query.back()) != std::string::npos) {
+    query.pop_back();
+  }
+  // The line feed ends a comment.
+  return "SELECT number, id FROM (WITH changes(number, id) AS (" + query +
+         "\n) SELECT number, id FROM changes) AS changes";
+}
+
 }  // namespace
 
 struct ChangeFeed::Connection {
@@ -54,24 +64,35 @@ std::vector<std::int64_t> ChangeFeed::ask() {
   GdalMessages messages;
   GDALDataset& source = *connection_->source;
   const auto release = [&source](OGRLayer* layer) { source.ReleaseResultSet(layer); };
-  const std::unique_ptr<OGRLayer, decltype(release)> rows(
-      source.ExecuteSQL(with_number(query_, since_).c_str(), nullptr, nullptr), release);
-  require(rows != nullptr, "cannot be asked what has changed: " + messages.text());
-  // GDAL may report a column that it recognizes as the id separately.
+  const auto answer = [&](const std::string& query) {
+    std::unique_ptr<OGRLayer, decltype(release)> rows(
+        source.ExecuteSQL(query.c_str(), nullptr, nullptr), release);
+    require(rows != nullptr, "cannot be asked what has changed: " + messages.text());
+    return rows;
+  };
+  const std::string query = with_number(query_, since_);
+  const auto rows = answer(query);
+  // GDAL may report a column that it recognizes as the key of a table separately: the id, or the
+  // number if that is the key of the table of changes.
   OGRFeatureDefn& columns = *rows->GetLayerDefn();
-  const bool has_id_apart = columns.GetFieldCount() == 1 && *rows->GetFIDColumn() != '\0';
+  const bool has_key_apart = columns.GetFieldCount() == 1 && *rows->GetFIDColumn() != '\0';
+  const bool has_number_apart =
+      has_key_apart && std::string_view(answer(with_names(query))->GetFIDColumn()) == "number";
   const auto is_integer = [&columns](int field) {
     const OGRFieldType type = columns.GetFieldDefn(field)->GetType();
     return type == OFTInteger || type == OFTInteger64;
   };
-  const bool fits =
-      has_id_apart ? is_integer(0) : columns.GetFieldCount() == 2 && is_integer(0) && is_integer(1);
+  const bool fits = has_key_apart ? is_integer(0)
+                                  : columns.GetFieldCount() == 2 && is_integer(0) && is_integer(1);
   require(fits, "live_query must return two integer columns: a number, and the id of a feature");
   std::vector<std::int64_t> ids;
   std::int64_t last = since_;
   while (const OGRFeatureUniquePtr row{rows->GetNextFeature()}) {
-    last = std::max<std::int64_t>(last, row->GetFieldAsInteger64(0));
-    ids.push_back(has_id_apart ? row->GetFID() : row->GetFieldAsInteger64(1));
+    const std::int64_t number = has_number_apart ? row->GetFID() : row->GetFieldAsInteger64(0);
+    last = std::max(last, number);
+    ids.push_back(has_key_apart && !has_number_apart
+                      ? row->GetFID()
+                      : row->GetFieldAsInteger64(has_number_apart ? 0 : 1));
   }
   require(!messages.has_failure(), "cannot be asked what has changed: " + messages.text());
   since_ = last;

@@ -84,7 +84,7 @@ bool has_several_statements(std::string_view where) {
 }  // namespace
 
 FeatureSource::FeatureSource(const std::string& path, const SourceSelection& selection)
-    : dataset_(open_source(path)), is_interleaved_(driver() == "OSM") {
+    : dataset_(open_source(path, &warning_)), is_interleaved_(driver() == "OSM") {
   const std::string shortage = shortage_of_files(*dataset_);
   if (!shortage.empty()) throw std::runtime_error(name_of_source(path) + ": " + shortage);
   std::vector<SelectionProblem> problems = select(selection);
@@ -221,6 +221,10 @@ void FeatureSource::expect(OGRLayer& layer) {
 
 std::vector<std::string> FeatureSource::warnings() const {
   std::vector<std::string> warnings;
+  // Such as that integers beyond 64 bits all become the same one.
+  if (!warning_.empty() && driver().starts_with("GeoJSON")) {
+    warnings.push_back("is not read as it is written: " + warning_);
+  }
   if (!failure_ahead_.empty()) {
     warnings.push_back("cannot be read as a whole: " + failure_ahead_);
   }

@@ -52,7 +52,8 @@ class FeatureSource {
 
   /// Possible problems, in words without the name of the source: a layer whose coordinates are
   /// interpreted as degrees because it has no known reference system and its format has no usual
-  /// one; a format that is read ahead, with an error that cannot be assigned to a feature.
+  /// one; a format that is read ahead, with an error that cannot be assigned to a feature; a
+  /// GeoJSON with numbers that GDAL changes.
   std::vector<std::string> warnings() const;
   /// Throws SourceError, before anything is read, if it is known that a layer cannot be projected
   /// to Web Mercator: because of its reference system or, if it has none, because of its declared
@@ -96,6 +97,7 @@ class FeatureSource {
   void check_all_was_read();
 
   ReadingSettings settings_;
+  std::string warning_;  // of GDAL when it opened the source
   GDALDatasetUniquePtr dataset_;
   // The layers of an OSM file are interleaved in one stream, which can only be read in its own
   // order.

@@ -189,7 +189,7 @@ CPLStringList options_for(const std::string& path, const CPLStringList& drivers)
 
 }  // namespace
 
-GDALDatasetUniquePtr open_source(const std::string& path) {
+GDALDatasetUniquePtr open_source(const std::string& path, std::string* warning) {
   register_drivers();
   if (is_in_cloud(path)) may_ask_cloud() = true;
   GdalMessages messages;
@@ -204,6 +204,7 @@ GDALDatasetUniquePtr open_source(const std::string& path) {
     fail(path, "cannot be opened: " + messages.text());
   }
   if (dataset == nullptr) explain_refusal(path, std::string(messages.text()));
+  if (warning != nullptr) *warning = messages.text();
   if (dataset->GetLayerCount() > 0) return dataset;
   if (!messages.has_failure()) fail(path, "has no layer of vector data");
   fail(path, std::string("is broken (") + dataset->GetDriverName() + "): " + messages.text());

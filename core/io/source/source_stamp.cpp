@@ -3,16 +3,24 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
+
+#include <cpl_conv.h>
 
 #include "core/io/file/checksum.h"
 #include "core/io/source/open_source.h"
 
 namespace trapeze {
 namespace {
+
+/// What a Shapefile may have beside it that says where it lies and how its texts are encoded. GDAL
+/// does not list one that it cannot use.
+constexpr std::array kBesideShapes = {".prj", ".PRJ", ".cpg", ".CPG"};
 
 struct FileState {
   std::uint64_t size;
@@ -41,13 +49,41 @@ std::string kind_of_remote(const std::string& path) {
   return path.starts_with("/vsi") ? path : "a database";
 }
 
+/// Whether one of the files has the name of this one, ignoring case and folders.
+bool is_named(const std::string& file, const std::vector<std::string>& files) {
+  return std::ranges::any_of(files, [&file](const std::string& other) {
+    return EQUAL(CPLGetFilename(other.c_str()), CPLGetFilename(file.c_str()));
+  });
+}
+
 std::vector<std::string> files_of(const std::string& path) {
+  const ReadingSettings settings;  // otherwise large features of a GeoJSON are refused
   const GDALDatasetUniquePtr dataset = open_source(path);
   const CPLStringList list(dataset->GetFileList());
   std::vector<std::string> files;
   for (int i = 0; i < list.Count(); ++i) files.emplace_back(list[i]);
+  if (std::string_view(dataset->GetDriverName()) == "ESRI Shapefile") {
+    for (const char* ending : kBesideShapes) {
+      const std::string file = std::filesystem::path(path).replace_extension(ending).string();
+      if (state_of(file) && !is_named(file, files)) files.push_back(file);
+    }
+  }
   std::sort(files.begin(), files.end());
   return files;
+}
+
+/// A file that a Shapefile with that stem has got beside it since then, in words.
+std::string addition_since(const SourceStamp& stamp, const std::string& stem,
+                           const std::filesystem::path& now) {
+  std::vector<std::string> names;
+  for (const FileStamp& file : stamp.files) names.push_back(file.name);
+  if (!is_named(stem + ".shp", names)) return {};
+  for (const char* ending : kBesideShapes) {
+    if (is_named(stem + ending, names)) continue;
+    const std::string file = (folder_of(now.string()) / now.stem()).string() + ending;
+    if (state_of(file)) return file + " is new";
+  }
+  return {};
 }
 
 std::string change_of_file(const FileStamp& stamp, const std::string& path) {
@@ -95,7 +131,7 @@ std::string change_since(const SourceStamp& stamp, const std::string& path) {
     const std::string change = change_of_file(file, (folder_of(now.string()) / name).string());
     if (!change.empty()) return change;
   }
-  return {};
+  return addition_since(stamp, stem, now);
 }
 
 }  // namespace trapeze

@@ -259,6 +259,18 @@ TEST(Dust, FewerMotesHaveTheSameArea) {
   EXPECT_NEAR(area / (20'000 * 4e6), 1, 1e-9);
 }
 
+TEST(Dust, MotesAtTheEdgesOfTheGridKeepTheirArea) {
+  for (const double x : {double{kGridMin}, 0.0, double{kGridMax}}) {
+    for (const double y : {double{kGridMin}, 0.0, double{kGridMax}}) {
+      const Box box = box_of_mote(x, y, 1e6);
+      EXPECT_EQ(box.max_x - box.min_x, 1000);
+      EXPECT_EQ(box.max_y - box.min_y, 1000);
+      EXPECT_TRUE(box.min_x >= kGridMin && box.max_x <= kGridMax);
+      EXPECT_TRUE(box.min_y >= kGridMin && box.max_y <= kGridMax);
+    }
+  }
+}
+
 TEST(Layer, DustOfAGreatToleranceIsMotesWithinPixelsAndLaterBirthsBeyond) {
   // Two squares of ten cells, twenty apart: both are gone at a tolerance of 64, in one pixel of 64
   // cells, but in different pixels of 8 cells.

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <string>
 #include <utility>
@@ -226,6 +228,49 @@ TEST(EarlierLayerTest, WhatDidNotKnowAllOverlapsIsNoSourceOfThem) {
   EXPECT_EQ(after.taken_over, 20u);
   EXPECT_TRUE(after.layer->has_all_overlaps());
   EXPECT_EQ(after.layer->overlaps().pairs().size(), 20u * 19);
+}
+
+/// Sectors around one vertex, too many for one graph if there are 4,500 of them.
+Map sectors(int count) {
+  const auto on_circle = [](int i) {
+    const double angle = 2 * std::numbers::pi * i / 4500;
+    return Point{static_cast<std::int32_t>(std::lround(1e6 * std::cos(angle))),
+                 static_cast<std::int32_t>(std::lround(1e6 * std::sin(angle)))};
+  };
+  Map map(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    map[static_cast<std::size_t>(i)].add(
+        std::vector<Point>{{0, 0}, on_circle(i), on_circle(i + 1)});
+  }
+  return map;
+}
+
+TEST(EarlierLayerTest, FeaturesOfAGroupThatFailedAreStillOneGroup) {
+  const Built before = build(sectors(4500), {});
+  ASSERT_NE(before.outcomes.find("borders meet at one vertex"), std::string::npos);
+  expect_equal(before, build(sectors(4500), {}, &before));
+  const Built fewer = build(sectors(500), {});
+  ASSERT_EQ(fewer.outcomes.find("borders meet at one vertex"), std::string::npos);
+  expect_equal(fewer, build(sectors(500), {}, &before));
+}
+
+TEST(EarlierLayerTest, ThereAreNoMoreOverlapsThanIfNothingWereTakenOver) {
+  LayerOptions options;
+  options.coverage = CoverageMode::off;
+  const auto squares = [](std::int32_t count) {
+    Map map(static_cast<std::size_t>(count));
+    for (std::int32_t i = 0; i < count; ++i) {
+      const std::int32_t side = 10'000 + i;
+      map[static_cast<std::size_t>(i)].add(
+          std::vector<Point>{{0, 0}, {side, 0}, {side, 10'000}, {0, 10'000}});
+    }
+    return map;
+  };
+  const Built before = build(squares(1010), options);
+  ASSERT_TRUE(before.layer->has_all_overlaps());
+  const Built anew = build(squares(1060), options);
+  ASSERT_FALSE(anew.layer->has_all_overlaps());
+  expect_equal(anew, build(squares(1060), options, &before));
 }
 
 TEST(EarlierLayerTest, NothingLeftOrNothingBeforeIsNoSpecialCase) {

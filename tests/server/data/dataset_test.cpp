@@ -17,6 +17,7 @@
 
 #include "core/layer/layer_builder.h"
 #include "server/config/load_config.h"
+#include "server/data/named_tables.h"
 #include "tests/core/io/temporary_folder.h"
 
 namespace trapeze {
@@ -112,6 +113,18 @@ TEST_F(LoadedAgain, WithoutAnyChangeIsTheSame) {
   load_again();
   EXPECT_THAT(kept(), ElementsAre("one", "other"));
   EXPECT_EQ(after_->generation(), before_->generation());
+}
+
+TEST_F(LoadedAgain, WithATableTranslatedOtherwiseIsAnotherGeneration) {
+  const auto generation_with = [this](const std::string& translation) {
+    ValueTableConfig table;
+    table.file = folder_.write("names.csv", "key,name,name:de\na,Alpha," + translation + "\n");
+    table.languages = {"de"};
+    return Dataset::load(layers_, before_.get(), nullptr, read_named_tables({{"names", table}}))
+        ->generation();
+  };
+  EXPECT_EQ(generation_with("Alfa"), generation_with("Alfa"));
+  EXPECT_NE(generation_with("Alfa"), generation_with("Anfang"));
 }
 
 TEST_F(LoadedAgain, ShowsALayerOtherwiseWithoutReadingIt) {

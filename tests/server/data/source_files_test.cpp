@@ -21,8 +21,10 @@ std::vector<std::string> files_of(const std::string& source) {
 }
 
 TEST(SourceFilesTest, AShapefileIsItsPartsAndAnyOtherFileHasAWriteAheadLog) {
-  EXPECT_THAT(files_of("/a/b.shp"),
-              ElementsAre("/a/b.shp", "/a/b.dbf", "/a/b.shx", "/a/b.prj", "/a/b.cpg"));
+  for (const std::string file : {"/a/b.shp", "/a/b.SHP"}) {
+    EXPECT_THAT(files_of(file), ElementsAre(file, "/a/b.dbf", "/a/b.shx", "/a/b.prj", "/a/b.cpg",
+                                            "/a/b.DBF", "/a/b.SHX", "/a/b.PRJ", "/a/b.CPG"));
+  }
   EXPECT_THAT(files_of("/a/b.gpkg"), ElementsAre("/a/b.gpkg", "/a/b.gpkg-wal"));
   EXPECT_THAT(files_of("PG:dbname=maps"), IsEmpty());
 }

@@ -100,6 +100,24 @@ TEST_F(WmsTest, StylesAreOfTheirLayers) {
   EXPECT_EQ(*over.body, *sample_.get("/tiles/rings/3/3/3.png?background=fff&fill=red").body);
 }
 
+TEST(WmsStyleTest, ParametersOfTheQueryReplaceTheStyleInMapsAndLegends) {
+  SiteOptions options;
+  options.styles.emplace("numbers", testing::style_of("color-by=n&breaks=2&ramp=Blues"));
+  testing::SampleSite sample(true, {}, options);
+  const TemporaryFolder folder;
+  sample.data().set(Dataset::load(
+      layers_of_files({folder.write("rings.geojson", R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "properties": {"n": 1}, "geometry": {"type": "Polygon",
+       "coordinates": [[[-40, 0.1], [-0.1, 0.1], [-0.1, 39], [-40, 39], [-40, 0.1]]]}}]})")})));
+  const std::string classes = "&rings.color-by=n&rings.classes=1:ff0000";
+  const auto map = sample.get(changed(kMap, "STYLES=", "STYLES=numbers") + classes);
+  EXPECT_EQ(map.status, 200) << *map.body;
+  EXPECT_EQ(*map.body, *sample.get(kMap + classes).body);
+  const std::string legend = "/wms?REQUEST=GetLegendGraphic&FORMAT=application/json&LAYER=rings";
+  EXPECT_EQ(*sample.get(legend + "&STYLE=numbers" + classes).body,
+            *sample.get(legend + classes).body);
+}
+
 TEST_F(WmsTest, FinerScreensHaveWiderLines) {
   const auto twice =
       sample_.get("/tiles/rings/3/3/3@2x.png?background=fff&stroke=000&stroke-width=3");

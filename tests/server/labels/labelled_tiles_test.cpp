@@ -297,6 +297,32 @@ TEST(LabelPlacingTest, KeepsNobodyLongerThanTheDeadlineAndNoWorkerAtAll) {
   EXPECT_EQ(answer.outcome, TileOutcome::drawn) << "placing goes on when nobody waits for it";
 }
 
+TEST(LabelPlacingTest, KeepsTheFirstNoLongerUnderLoadOrIfOthersJoinIt) {
+  const auto dataset = many_squares();
+  const auto book = std::make_shared<LabelBook>(FontChoice{open_fonts({})});
+  std::vector<std::unique_ptr<MaskRenderer>> renderers;
+  renderers.push_back(std::make_unique<SoftwareRenderer>());
+  TileServiceOptions options;
+  options.deadline = std::chrono::milliseconds(100);
+  options.labels = book;
+  TileService service(options, std::move(renderers));
+  const auto submit = [&](const TilePlan& plan, std::string key) {
+    auto promise = std::make_shared<std::promise<TileAnswer>>();
+    service.submit({plan, std::move(key)},
+                   [promise](const TileAnswer& answer) { promise->set_value(answer); });
+    return promise->get_future();
+  };
+  const TilePlan labelled = *plan_tile(request_of("squares/12/2080/2030.png?label=n"), dataset);
+  const TilePlan plain = *plan_tile(request_of("squares/12/2080/2030.png"), dataset);
+  auto first = submit(labelled, labelled.key());
+  for (int i = 0; first.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready; ++i) {
+    for (int k = 0; k < 20; ++k) submit(plain, fmt::format("{} {}", i, k));  // as if they differed
+    if (i % 10 == 0) submit(labelled, labelled.key());
+  }
+  EXPECT_EQ(first.get().outcome, TileOutcome::placing);
+  EXPECT_FALSE(book->has_placed({*dataset, labelled.labels, labelled.view, labelled.scale}));
+}
+
 TEST(LabelRequestsTest, WrongOnesAreTold) {
   testing::SampleSite site;
   const auto answer = [&site](const std::string& query) {

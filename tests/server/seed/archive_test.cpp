@@ -60,7 +60,7 @@ class Seeding {
                 [this](const SeedProgress& progress) { progress_ = progress; });
   }
   SeedLogHead head(const SeedPart& part = {}) const {
-    return {plan_.identity("software"), jobs_.jobs.size(), jobs_of_part(jobs_, part), part,
+    return {plan_.identity("software", ""), jobs_.jobs.size(), jobs_of_part(jobs_, part), part,
             description(zooms_)};
   }
   /// Progress of the last run.
@@ -158,6 +158,17 @@ TEST_F(ArchiveTest, PmtilesThatIsSparseHasWhatIsSeenOnly) {
   const PmtilesReader sparse(archive("sparse.pmtiles", {true}));
   EXPECT_LT(sparse.addressed_tiles(), all.addressed_tiles());
   EXPECT_EQ(sparse.tile_contents() + 1, all.tile_contents()) << "only the empty one is missing";
+}
+
+TEST_F(ArchiveTest, PmtilesThatIsSparseAndShowsNothingHasOneTile) {
+  const SeedPlan plan = *SeedPlan::make(seed_request(*dataset_, {0, 3}, "opacity=0"), dataset_);
+  const std::string log = folder_.file("nothing");
+  Seeding(plan, {0, 3}).run(log);
+  join_into_archive(SeedLogs({log}), folder_.file("nothing.pmtiles"), {true});
+  const PmtilesReader reader(folder_.file("nothing.pmtiles"));
+  ASSERT_EQ(reader.entries().size(), 1u) << "a directory must not be empty";
+  EXPECT_EQ(reader.entries().front().id, 0u);
+  EXPECT_EQ(reader.addressed_tiles(), 1u);
 }
 
 TEST_F(ArchiveTest, PmtilesOfManyEntriesHasLeavesAndARootThatFits) {
@@ -332,6 +343,25 @@ TEST_F(ArchiveTest, ALogOfSomethingElseIsNotGoneOnWith) {
   EXPECT_EQ(read_file(log_), before);
 }
 
+TEST_F(ArchiveTest, AFileThatIsNoLogIsLeftAlone) {
+  for (const char* const text : {"notes", "trapeze seeding 1\n{\"identity\":\"of another\""}) {
+    const std::string path = folder_.file("notes.txt");
+    std::ofstream(path, std::ios::binary) << text;
+    EXPECT_THROW(SeedLog(path, seeding_.head()), std::runtime_error);
+    EXPECT_EQ(read_file(path), text);
+  }
+}
+
+TEST_F(ArchiveTest, FontsBelongToASeedingIfThereIsTextInItsTiles) {
+  const auto identities_differ = [this](const std::string& style) {
+    const auto plan = SeedPlan::make(seed_request(*dataset_, {0, 1}, style), dataset_);
+    return plan->identity("software", "one") != plan->identity("software", "other");
+  };
+  EXPECT_TRUE(identities_differ("label=name"));
+  EXPECT_TRUE(identities_differ("debug=tile"));
+  EXPECT_FALSE(identities_differ("stroke=black"));
+}
+
 TEST_F(ArchiveTest, ALogThatIsBeingWrittenIsNotWrittenByAnother) {
   const SeedLog log(log_, seeding_.head());
   EXPECT_THROW(SeedLog(log_, seeding_.head()), std::runtime_error);
@@ -365,6 +395,23 @@ TEST(UpdateTest, DrawsWhatHasChangedAndGivesWhatSeedingAnewGives) {
   EXPECT_EQ(read_file(folder.file("update.pmtiles")), read_file(folder.file("anew.pmtiles")));
   EXPECT_GT(update.progress().reused, drawn / 2);
   EXPECT_LT(update.progress().reused, drawn);
+}
+
+TEST(UpdateTest, OfUnchangedDataNothingIsDrawn) {
+  constexpr ZoomRange kZooms{4, 8};
+  TemporaryFolder folder;
+  testing::EditedLand land(7);
+  const auto dataset = land.load();
+  const auto plan = SeedPlan::make(seed_request(*dataset, kZooms, "fill-opacity=0.5"), dataset);
+  Seeding(*plan, kZooms).run(folder.file("old"));
+  join_into_archive(SeedLogs({folder.file("old")}), folder.file("old.pmtiles"), {});
+  const EarlierArchive earlier(folder.file("old.pmtiles"));
+  Seeding update(*plan, kZooms);
+  update.run(folder.file("update"), 1, {},
+             [&](const Digest& fingerprint) { return earlier.find(fingerprint); });
+  EXPECT_GT(update.progress().figures.drawn, 0u);
+  EXPECT_EQ(update.progress().figures.drawn, update.progress().reused);
+  EXPECT_EQ(update.progress().figures.alone, 0u);
 }
 
 TEST(UpdateTest, WhatIsNoArchiveOfOursIsRefused) {

@@ -95,6 +95,18 @@ TEST(KnownTilesTest, MostTilesAreNotLookedAt) {
   EXPECT_LT(seeded.figures().alone, seeded.figures().drawn / 10);
 }
 
+TEST(KnownTilesTest, JobsAreSmallWhateverKeepsTilesFromBeingKnown) {
+  const auto dataset = testing::sample_dataset();
+  for (const char* const style : {"stroke=black", "pattern=hatch", "debug=tile"}) {
+    SCOPED_TRACE(style);
+    const auto plan = SeedPlan::make(seed_request(*dataset, {0, 6}, style), dataset);
+    const SeededTiles seeded(*plan);
+    const SeedFigures& figures = seeded.figures();
+    EXPECT_GE(static_cast<double>(seeded.jobs().jobs.size()),
+              static_cast<double>(figures.drawn + figures.alone) / (3 * kTilesOfJob));
+  }
+}
+
 TEST(KnownTilesTest, NothingIsKnownOfTilesThatAreMarked) {
   const auto dataset = testing::sample_dataset();
   const auto plan = SeedPlan::make(seed_request(*dataset, {0, 3}, "debug=tile"), dataset);

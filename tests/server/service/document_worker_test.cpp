@@ -5,6 +5,7 @@
 #include <atomic>
 #include <future>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -76,6 +77,17 @@ TEST_F(DocumentWorkerTest, AFailureIsAnswered) {
   EXPECT_EQ(failing.get().problem().status, 500);
   opener_.set_value();
   EXPECT_EQ(text_of(order("a", "now")), "now");
+}
+
+TEST_F(DocumentWorkerTest, OutlivesACallbackThatFails) {
+  opener_.set_value();
+  worker_->submit(
+      dataset_, "a",
+      []() -> Result<Document> {
+        return Document{"text/plain", "one"};
+      },
+      [](const DocumentWorker::Answer&) { throw std::bad_alloc(); });
+  EXPECT_EQ(text_of(order("b", "two")), "two");
 }
 
 TEST_F(DocumentWorkerTest, EndingAnswersWhatWaits) {

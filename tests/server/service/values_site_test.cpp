@@ -168,6 +168,17 @@ TEST_F(ValuesSiteTest, FiltersByValue) {
   EXPECT_EQ(colour("values=" + id + "&filter=value+IS+NULL&fill=lime", 2), (Rgba{0, 255, 0, 255}));
 }
 
+TEST_F(ValuesSiteTest, WmsKnowsPostedTables) {
+  const std::string id = id_of("code,score\nC0,1\nC1,5\n");
+  const std::string style =
+      "values=" + id + "&color-by=value&breaks=2&ramp=Blues&quality=exact&background=fff";
+  const std::string map = "/wms?VERSION=1.1.1&REQUEST=GetMap&LAYERS=columns&STYLES=&SRS=EPSG:4326&";
+  const std::string window = "BBOX=-180,-60,180,60&WIDTH=64&HEIGHT=32&FORMAT=image/png&";
+  EXPECT_EQ(words(map + window + style, 200),
+            words("/map/columns.png?crs=EPSG:4326&bbox=-180,-60,180,60&width=64&height=32&" + style,
+                  200));
+}
+
 TEST_F(ValuesSiteTest, TellsWhatMatchesAndNamesTheFirstKeysThatDoNot) {
   const auto response =
       post("code,score\nC0,1\nC1,5\nX,9\nY,3\n", "?layer=columns&join=code", "text/csv");

@@ -97,6 +97,20 @@ TEST_F(TilePlanTest, DifferentPicturesHaveDifferentKeys) {
   EXPECT_NE(this->key("rings,west/3/4/4.png"), this->key("west,rings/3/4/4.png"));
 }
 
+TEST_F(TilePlanTest, ToleranceIsPartOfTheKeyOfLabels) {
+  const std::string query = "/3/4/4.png?label=name&simplify=";
+  EXPECT_NE(key("rings" + query + "0.24"), key("rings" + query + "0.25")) << "at the same level";
+  const std::string alone = "/3/4/4.png?fill-opacity=0&label=name&simplify=";
+  EXPECT_NE(key("rings" + alone + "0"), key("rings" + alone + "8")) << "nothing but labels";
+}
+
+TEST_F(TilePlanTest, TheNumbersOfATileArePartOfTheKeyIfTheyAreDrawn) {
+  TilePlan plan = this->plan("rings/3/4/4.png?debug=tile");
+  const std::string key = plan.key();
+  plan.caption.clear();  // as in a window of the same place
+  EXPECT_NE(plan.key(), key);
+}
+
 TEST_F(TilePlanTest, TheKeyDependsOnTheDataAndNotOnTheRun) {
   const auto again = testing::sample_dataset();
   EXPECT_EQ(again->generation(), dataset_->generation());

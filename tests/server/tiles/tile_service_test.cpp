@@ -230,6 +230,18 @@ TEST_F(TileServiceTest, WhatNobodyWantsAnyLongerIsNotDrawn) {
   EXPECT_EQ(next.get().outcome, TileOutcome::drawn);
 }
 
+TEST_F(TileServiceTest, WhatNobodyWantsAnyLongerIsObservedAsWithdrawnAndNotAsLate) {
+  std::promise<TileOutcome> observed;
+  TileServiceOptions options;
+  options.observe = [&](const TileAnswer& answer) { observed.set_value(answer.outcome); };
+  start(options);
+  auto drawing = submit(0);
+  wait_until_drawing(1);
+  service_->withdraw(ticket_);
+  EXPECT_EQ(observed.get_future().get(), TileOutcome::withdrawn);
+  service_.reset();
+}
+
 TEST_F(TileServiceTest, WhatAnotherStillWantsIsDrawnForHim) {
   start();
   auto one = submit(0);

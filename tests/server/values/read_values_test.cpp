@@ -53,6 +53,23 @@ TEST(ReadValuesTest, FindsColumnsByTheirNames) {
   EXPECT_EQ(rows_of("[{\"x\": 0, \"A3\": \"FRA\", \"area\": 1}]", {{"A3", "area"}}), "FRA=1");
 }
 
+TEST(ReadValuesTest, FindsAColumnThatOnlyLaterRowsHaveAndRefusesOneThatNoneHas) {
+  const auto table = read(R"([{"A3": "FRA"}, {"A3": "DEU", "area": 2}, {"area": 3, "A3": "ITA"}])");
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->names().value, "area");
+  EXPECT_EQ(table->missing(), 1u);
+  EXPECT_THAT(rows_of(R"([{"A3": "FRA", "area": 1}])", {{"A3", "aera"}}),
+              HasSubstr("400 No row of the table has \"aera\""));
+  EXPECT_THAT(rows_of(R"([{"A3": "FRA"}])"), HasSubstr("has a value beside \"A3\""));
+}
+
+TEST(ReadValuesTest, FindsColumnsWithLongNames) {
+  const std::string name(200, 'n');
+  const std::string text = "A3," + name + "1," + name + "2\nFRA,1,2\n";
+  EXPECT_EQ(rows_of(text, {{"A3", name + "2"}}), "FRA=2");
+  EXPECT_EQ(read(text, {{"A3", name + "2"}})->names().value.size(), 128u);
+}
+
 TEST(ReadValuesTest, TakesColumnsForNumbersOnlyIfAllAreNumbers) {
   EXPECT_EQ(read("k,v\na,1\nb,-2\nc,+3\n")->type(), FieldType::integer);
   EXPECT_EQ(read("k,v\na,1\nb,2.5e3\n")->type(), FieldType::real);

@@ -24,6 +24,21 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
+// A process of another container may have the same id.
+TEST(AtomicFileTest, NeverGivesTheNameToWhatAnotherHasNotFinished) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("file");
+  AtomicFile first(path);
+  first.write(bytes_of("first"));
+  AtomicFile second(path);
+  second.write(bytes_of("sec"));
+  EXPECT_THROW(first.finish(), std::runtime_error);
+  EXPECT_FALSE(fs::exists(path));
+  second.write(bytes_of("ond"));
+  second.finish();
+  EXPECT_EQ(read(path), "second");
+}
+
 TEST(AtomicFileTest, HasItsNameOnlyOnceItIsFinished) {
   const TemporaryFolder folder;
   const std::string path = folder.write("file", "before");

@@ -492,6 +492,29 @@ TEST_F(PreparedLayerTest, NoticesChangesInEveryFileOfAShapefile) {
   EXPECT_THAT(failure_of(prepared_), HasSubstr("land.dbf"));
 }
 
+TEST_F(PreparedLayerTest, NoticesWhatAShapefileGetsBesideIt) {
+  const std::string shapes = path("land.shp");
+  write_source(shapes, "ESRI Shapefile",
+               {{.features = {{"POLYGON ((0 0, 2 0, 2 2, 0 2, 0 0))", 1, "a"}}}});
+  std::filesystem::rename(path("land.prj"), path("kept"));
+  prepare(shapes, prepared_);
+  EXPECT_NO_THROW(open_prepared_layer(prepared_));
+  std::filesystem::rename(path("kept"), path("land.prj"));
+  EXPECT_THAT(failure_of(prepared_), HasSubstr(path("land.prj") + " is new"));
+  folder_.write("land.prj", "GDAL does not list this");
+  prepare(shapes, prepared_);
+  EXPECT_NO_THROW(open_prepared_layer(prepared_));
+  folder_.write("land.prj", "nor this");
+  EXPECT_THAT(failure_of(prepared_), HasSubstr("land.prj has 8 bytes"));
+}
+
+TEST_F(PreparedLayerTest, StampsAGeoJsonWithFeaturesOfAnySize) {
+  const std::string file = source("source.geojson", std::string(2000, 'a'));
+  CPLSetConfigOption("OGR_GEOJSON_MAX_OBJ_SIZE", "0.001");  // megabytes
+  EXPECT_NO_THROW(prepare(file, prepared_));
+  CPLSetConfigOption("OGR_GEOJSON_MAX_OBJ_SIZE", nullptr);
+}
+
 TEST_F(PreparedLayerTest, ReplacesAPreparedFileWhoseOldContentsStayWhereTheyAreMapped) {
   const std::string file = source("source.geojson", "before");
   prepare(file, prepared_);

@@ -161,6 +161,19 @@ TEST(PreparedPartsTest, RefusesWhatDoesNotBelongTogether) {
   EXPECT_THAT(failure_of_parts({source}), HasSubstr("is not a prepared file"));
 }
 
+TEST(PreparedPartsTest, RefusesAPartOfAnotherStateWithTheSameBoxes) {
+  const TemporaryFolder folder;
+  const std::string source = write_squares(folder, "squares.gpkg", 20);
+  const auto files = prepare(folder, source, "part", 3);
+  LoadOptions options;
+  options.division = SourceDivision::of(source, {}, {}, 3, {});
+  options.part = 2;
+  SourceStamp before = stamp_source(source);
+  ++before.files.front().checksum;  // another attribute, say
+  save_prepared_layer(files[1], load_layer(source, options), 77, before);
+  EXPECT_THAT(failure_of_parts(files), AllOf(HasSubstr(files[1]), HasSubstr("another state")));
+}
+
 TEST(PreparedPartsTest, RefusesAnOverviewOfOtherParts) {
   const TemporaryFolder folder;
   const std::string source = write_squares(folder, "squares.gpkg", 20);

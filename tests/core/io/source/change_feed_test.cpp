@@ -84,6 +84,18 @@ TEST_F(ChangeFeedTest, KnowsTheColumnOfIdsOfATable) {
   EXPECT_THAT(feed.take(), ElementsAre(1));
 }
 
+TEST_F(ChangeFeedTest, TheNumberMayBeTheKeyOfTheTableOfChanges) {
+  sql("CREATE TABLE notes(number INTEGER PRIMARY KEY AUTOINCREMENT, id INTEGER)");
+  sql("INSERT INTO notes(id) VALUES(40)");
+  ChangeFeed feed(town_, "SELECT number, id FROM notes WHERE number > {since};");
+  EXPECT_THAT(feed.take(), IsEmpty());
+  sql("INSERT INTO notes(id) VALUES(9)");
+  EXPECT_THAT(feed.take(), ElementsAre(9));
+  EXPECT_THAT(feed.take(), IsEmpty());
+  sql("INSERT INTO notes(id) VALUES(5)");
+  EXPECT_THAT(feed.take(), ElementsAre(5));
+}
+
 TEST_F(ChangeFeedTest, SaysWhatIsWrongWithAQuery) {
   EXPECT_THAT(failure_of("SELECT number, id FROM changes"),
               AllOf(HasSubstr("town.gpkg"), HasSubstr("{since}")));
