@@ -91,7 +91,7 @@ def all_commands(command):
 
 def choices_of(entry):
     """What an option takes that takes one of a few words; its text lists them."""
-    if entry.operand != "NAME":
+    if entry.operand not in ("NAME", "SYSTEM"):
         return []
     plain = re.sub(r"\s*\([^)]*\)", "", entry.text).replace('"', "")
     word = r"[\w-]+(?::\w+)?"
@@ -246,7 +246,8 @@ def kind_of(command, entry):
         return "toml"
     if choices := choices_of(entry):
         return " ".join(choices)
-    return {"FILE": "file", "OUT": "file", "F": "file", "OLD": "file", "NEW": "file", "DIR": "folder"}.get(operand, "nothing")
+    return {"FILE": "file", "OUT": "file", "F": "file", "OLD": "file", "NEW": "file", "PART": "file",
+            "DIR": "folder"}.get(operand, "nothing")
 
 
 def cases_of(program):

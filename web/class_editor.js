@@ -59,13 +59,14 @@ export class ClassEditor {
       if (breaks === "") return [];
       return [["color-by", property], ["breaks", breaks], ["ramp", this.ramp_.value]];
     }
-    const named = this.classes_.filter(({ kind, value }) => kind !== "value" || value !== "");
+    const named = this.classes_.filter(({ is_new, value }) => !is_new || value !== "");
     if (named.length === 0) return [];
     return [["color-by", property], ["classes", format_classes(named)]];
   }
 
   /** `style`: a Map of parameters. */
   show(style) {
+    ++this.asked_; // a suggestion that is on its way must not replace this style
     choose(this.property_, style.get("color-by") ?? "");
     this.breaks_.value = style.get("breaks") ?? "";
     choose(this.ramp_, style.get("ramp") ?? this.ramp_.options[0].value);
@@ -94,7 +95,8 @@ export class ClassEditor {
 
   is_of_numbers_() {
     const field = this.fields_.find(({ name }) => name === this.property_.value);
-    return field !== undefined && field.type !== "string";
+    // Joined values are not a field, and the catalogue does not tell their type; only numbers have breaks.
+    return field === undefined ? this.breaks_.value !== "" : field.type !== "string";
   }
 
   make_node_() {
@@ -127,7 +129,7 @@ export class ClassEditor {
       const used = new Set(this.classes_.map(({ colour }) => colour));
       let position = 0;
       while (used.has(light_colour_at(position))) position++;
-      this.classes_.push({ kind: "value", value: "", colour: light_colour_at(position) });
+      this.classes_.push({ kind: "value", value: "", colour: light_colour_at(position), is_new: true });
       this.show_rows_();
       this.rows_.lastElementChild.querySelector("input").focus();
     });

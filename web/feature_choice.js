@@ -93,10 +93,10 @@ export class FeatureChoice {
   async ask_({ lat, lng }, { is_by_key = false } = {}) {
     const at = { lat, lon: wrapped_longitude(lng) };
     this.at_ = at;
-    const { base, layers, shared } = this.look_();
+    const { base, layers, catalog, shared } = this.look_();
     try {
       if (layers.length === 0) throw new Error("No layer is shown.");
-      const found = await ask_features(base, layers, shared, at, this.map_.getZoom());
+      const found = await ask_features(base, layers, catalog, shared, at, this.map_.getZoom());
       if (this.at_ !== at) return;
       this.found_ = found;
       this.choose_(found.find((feature) => this.is_chosen_(feature)) ?? found[0]);

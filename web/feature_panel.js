@@ -1,18 +1,26 @@
 // The features at a place with their attributes, one of them selected.
 
 import { button, element } from "./elements.js";
-import { path_of_layers, parameters_of_layers, query_part } from "./tile_query.js";
+import { tile_requests } from "./tile_requests.js";
 
 /**
  * The features of `layers` ({name, style}, the lowest first) at a place, as drawn at `zoom`, the topmost
- * first. Throws an Error with a user-readable message.
+ * first; `catalog` has all layers. Throws an Error with a user-readable message.
  */
-export async function ask_features(base, layers, shared, { lat, lon }, zoom) {
-  const parameters = [["z", zoom], ...parameters_of_layers(layers, shared)];
-  const path = `identify/${path_of_layers(layers)}/${lon},${lat}${query_part(parameters)}`;
+export async function ask_features(base, layers, catalog, shared, { lat, lon }, zoom) {
+  // The limits of a tile, for the number of layers and the length of the address, apply here, too.
+  const settings = {
+    layers: catalog, shared, has_background: false, folder: new URL("identify/", base).pathname,
+  };
+  const found = await Promise.all(tile_requests(layers, settings).reverse().map(({ path, query }) =>
+    ask(new URL(`identify/${path}/${lon},${lat}${query ? `${query}&` : "?"}z=${zoom}`, base))));
+  return found.flat();
+}
+
+async function ask(url) {
   let response;
   try {
-    response = await fetch(new URL(path, base));
+    response = await fetch(url);
   } catch {
     throw new Error("The server cannot be reached.");
   }

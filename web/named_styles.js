@@ -21,7 +21,8 @@ export async function load_style(base, name) {
 async function ask(url, otherwise = null) {
   try {
     const response = await fetch(url);
-    return response.ok ? await response.json() : null;
+    if (response.status === 404) return null;
+    return response.ok ? await response.json() : otherwise;
   } catch {
     return otherwise;
   }

@@ -11,6 +11,7 @@ const WAYS = [["quantile", "quantiles"], ["equal", "equal steps"], ["jenks", "na
 const COUNTS = [3, 4, 5, 6, 7, 8, 9];
 const USUAL = { way: "quantile", count: "5", ramp: "YlGnBu" };
 const COPIED_MS = 1500;
+const LOOKING = "Looking…";
 
 export class NumberEditor {
   /**
@@ -59,7 +60,10 @@ export class NumberEditor {
   /** `style`: a Map of the parameters passed to on_change; an empty one removes the numbers. */
   show(style) {
     const is_on = style.size > 0;
-    if (this.values_ !== (is_on ? style.get("values") : null)) this.told_.textContent = "";
+    if (this.values_ !== (is_on ? style.get("values") : null) || this.told_.textContent === LOOKING) {
+      this.told_.textContent = "";
+      ++this.made_anew_; // a table that is still being posted is not wanted any more
+    }
     this.values_ = is_on ? style.get("values") : null;
     this.joined_ = style.get("join");
     if (is_on) {
@@ -125,9 +129,11 @@ export class NumberEditor {
     this.key_.replaceChildren(...options());
     this.value_.replaceChildren(...options());
     const [key = columns.find((name) => fields.includes(name)) ?? columns[0], value] =
-      chosen.map((name) => (columns.includes(name) ? name : undefined));
+      chosen.map((name) => (name !== "" && columns.includes(name) ? name : undefined));
+    const others = columns.filter((name) => name !== key);
     this.key_.value = key ?? "";
-    this.value_.value = value ?? columns.find((name) => name !== key) ?? "";
+    // The column of row numbers that many programs write has no name.
+    this.value_.value = others.includes(value) ? value : (others.find((name) => name !== "") ?? "");
     if (key !== chosen[0] && fields.includes(key)) this.join_.value = key;
     this.columns_.hidden = columns.length <= 2;
   }
@@ -138,11 +144,12 @@ export class NumberEditor {
       this.told_.textContent = "Paste a table first.";
       return this.text_.focus();
     }
-    const columns = this.key_.value && this.value_.value
-      ? { key: this.key_.value, value: this.value_.value } : {};
+    // Without a name, the server takes the first column, or the second one for the values.
+    const columns = Object.fromEntries([["key", this.key_.value], ["value", this.value_.value]]
+      .filter(([, name]) => name !== ""));
     const number = ++this.made_anew_;
     const join = this.join_.value;
-    this.told_.textContent = "Looking…";
+    this.told_.textContent = LOOKING;
     const { table, problem } = await post_table(document.baseURI, text, columns, this.layer_.name, join);
     if (number !== this.made_anew_) return undefined;
     this.told_.textContent = problem ?? fit_in_words(table);

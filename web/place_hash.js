@@ -27,7 +27,7 @@ const READ_SHARED = {
   simplify: (text) => is_number(text, 0, LONGEST_SIMPLIFY),
   topology: (text) => ["strict", "fast"].includes(text),
   small: (text) => ["dust", "keep", "drop"].includes(text),
-  debug: (text) => text.split(",").every((word) => DEBUG.includes(word)),
+  debug: (text) => text === "" || text.split(",").every((word) => DEBUG.includes(word)),
 };
 
 /**

@@ -94,9 +94,10 @@ export class SharePanel {
     this.long_row_.hidden = true;
     try {
       // Posted every time the panel opens, because the server may have evicted the style.
-      this.id_ = await keep_style(this.base_, document);
+      const id = await keep_style(this.base_, document);
+      if (this.seen_ === seen) this.id_ = id;
     } catch (error) {
-      this.problem_ = error.message;
+      if (this.seen_ === seen) this.problem_ = error.message;
     }
     if (this.seen_ === seen) this.fill_();
   }

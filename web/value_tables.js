@@ -1,11 +1,33 @@
 // Tables of numbers from spreadsheets, and posting them to the server.
 
-/** The column names of a pasted table; [] if there is no header line. */
+/** The column names of a pasted table, read as the server does; [] if there is no header line. */
 export function columns_of(text) {
-  const [line = ""] = text.trim().split(/\r?\n|\r/, 1);
-  const delimiter = ["\t", ";", ","].find((one) => line.includes(one));
-  if (!delimiter) return [];
-  return line.split(delimiter).map((name) => name.trim().replace(/^"(.*)"$/, "$1").replaceAll('""', '"'));
+  const { header, delimiter } = header_of(text);
+  const field = new RegExp(`${delimiter}(?:"((?:[^"]|"")*)"|([^${delimiter}]*))`, "g");
+  const names = [...(delimiter + header).matchAll(field)].map(([, quoted, plain]) =>
+    in_one_line(quoted?.replaceAll('""', '"') ?? plain).replace(/^[ \t]+|[ \t]+$/g, ""));
+  return names.length > 1 ? names : [];
+}
+
+/** The first line that is not empty; in quotes, a line break belongs to a name. */
+function header_of(text) {
+  const table = text.replace(/^\uFEFF?[\r\n]*/, "");
+  const [line] = /^(?:"[^"]*"?|[^"\r\n]+)*/.exec(table);
+  const unquoted = line.replaceAll(/"[^"]*"?/g, "");
+  const delimiter = ["\t", ";"].find((one) => unquoted.includes(one)) ?? ",";
+  const field = `(?:"(?:[^"]|"")*"|[^${delimiter}\\r\\n]*)`;
+  const [header] = new RegExp(`^${field}(?:${delimiter}${field})*`).exec(table);
+  return { table, header, delimiter };
+}
+
+/** The table with each name in one line: the address names columns, and can have no line breaks. */
+function with_short_names(text) {
+  const { table, header } = header_of(text);
+  return in_one_line(header) + table.slice(header.length);
+}
+
+function in_one_line(text) {
+  return text.replaceAll(/[\r\n]+/g, " ");
 }
 
 /**
@@ -21,7 +43,7 @@ export async function post_table(base, text, columns, layer, join) {
     response = await fetch(new URL(`values?${query}`, base), {
       method: "POST",
       headers: { "Content-Type": "text/csv; charset=utf-8" },
-      body: text,
+      body: with_short_names(text),
     });
   } catch {
     return { problem: "The server cannot be reached." };

@@ -22,13 +22,7 @@ import { load_style, load_style_names, over, usual_shared, usual_style } from ".
 import { Notices } from "./notices.js";
 import { format_hash, parse_hash } from "./place_hash.js";
 import { ProgressLine } from "./progress_line.js";
-import {
-  divide_shared,
-  has_fast_topology,
-  parameters_of_layers,
-  path_of_layers,
-  query_part,
-} from "./tile_query.js";
+import { has_fast_topology } from "./tile_query.js";
 import { tile_requests } from "./tile_requests.js";
 import { watch_tiles } from "./tile_timing.js";
 import { TryPanel } from "./try_panel.js";
@@ -39,6 +33,7 @@ const NARROW = "(max-width: 1100px)";
 const UPRIGHT = "(max-width: 900px)"; // a tablet, half of which the panel would cover
 const MESSAGE_MS = 6000;
 const LEAST_ZOOM_TO = 18; // for a layer without detail_zoom
+const OF_FILTER = ["filter", "ids", "join", "values"]; // a filter may name joined values
 
 const BASE = document.baseURI;
 const TILES = new URL("tiles/", BASE).href;
@@ -363,11 +358,12 @@ class Viewer {
   }
 
   async change_named_style_(name) {
-    const shared = new Map([...(name ? [["style", name]] : []),
-      ...[...this.shared_].filter(([key]) => key !== "style")]);
-    const named = await this.load_named_style_(shared);
-    if ($("style").value !== name) return;
-    this.shared_ = shared;
+    const { view_: view } = this;
+    const chosen = new Map(name ? [["style", name]] : []);
+    const named = await this.load_named_style_(chosen);
+    if (this.view_ !== view || $("style").value !== name) return;
+    // Read only now: other settings may have been changed in the meantime.
+    this.shared_ = new Map([...chosen, ...[...this.shared_].filter(([key]) => key !== "style")]);
     this.named_ = named;
     this.show_usual_();
     this.prove_all_();
@@ -607,12 +603,10 @@ class Viewer {
       .map((i) => ({ name: this.layers_[i].name, style: this.states_[i].drawn }));
   }
 
+  /** More than one address, the lowest first, if the server cannot draw all layers in one tile. */
   tile_url_() {
-    const layers = this.drawn_layers_();
-    if (layers.length === 0) return "";
-    const { styled, shared } = divide_shared(layers, this.layers_, this.in_language_(this.shared_));
-    const query = query_part(parameters_of_layers(styled, shared));
-    return `${TILES}${path_of_layers(layers)}/{z}/{x}/{y}.png${query}`;
+    return this.tile_requests_(this.shared_)
+      .map(({ path, query }) => `${TILES}${path}/{z}/{x}/{y}.png${query}`).join(" ");
   }
 
   what_is_shared_() {
@@ -660,8 +654,8 @@ class Viewer {
 
   /** The distribution of the values of an attribute, in view or in the whole layer. */
   ask_values_(i, attribute, is_all) {
-    const { drawn } = this.states_[i];
-    const filter = [...(drawn ?? [])].filter(([name]) => name === "filter");
+    const { drawn, usual } = this.states_[i];
+    const filter = [...over(usual, drawn ?? new Map())].filter(([name]) => OF_FILTER.includes(name));
     return ask_values(BASE, this.layers_[i].name, attribute, is_all ? null : box_in_view(this.map_),
       filter);
   }

@@ -229,6 +229,11 @@ std::filesystem::path overview_in(const std::filesystem::path& folder,
 int run_join(const PrepareArguments& arguments) {
   if (!arguments.files.empty()) throw UsageError("--join takes parts and no FILE");
   if (!arguments.part.empty()) throw UsageError("--join and --part exclude each other");
+  const CoverageArguments& coverage = arguments.coverage;
+  const bool is_built = !arguments.selection.is_all() || !arguments.crs.empty() ||
+                        !arguments.reuse.empty() || !coverage.mode.empty() || coverage.close_gaps ||
+                        coverage.merge || !coverage.merge_by.empty();
+  if (is_built) throw UsageError("--join takes no options for building: parts stay as they are");
   std::vector<std::string> files;
   for (const std::string& name : arguments.join) {
     for (const std::string& file :

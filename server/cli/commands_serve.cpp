@@ -24,9 +24,9 @@ namespace trapeze {
 namespace {
 
 /// Layers are neither drawn nor announced beyond the last zoom that the server answers.
-void limit_zooms(Config& config) {
-  for (LayerConfig& layer : config.layers) {
-    layer.max_zoom = std::max(layer.min_zoom, std::min(layer.max_zoom, config.limits.zoom));
+void limit_zooms(std::vector<LayerConfig>& layers, int last) {
+  for (LayerConfig& layer : layers) {
+    layer.max_zoom = std::max(layer.min_zoom, std::min(layer.max_zoom, last));
   }
 }
 
@@ -44,6 +44,8 @@ void throw_if_any(const std::vector<ConfigProblem>& problems) {
 /// Replaces the layers of the configuration.
 void take_files(const std::vector<std::string>& files, LoadedConfig& loaded) {
   loaded.config.layers = layers_or_throw(files);
+  std::erase_if(loaded.origins,
+                [](const auto& origin) { return origin.first.starts_with("layer."); });
   for (const LayerConfig& layer : loaded.config.layers) {
     for (const char* key : {"name", "file", "title"}) {
       loaded.origins[fmt::format("layer.{}.{}", layer.name, key)] = "FILE";
@@ -82,7 +84,9 @@ void check_files_exist(const std::vector<LayerConfig>& layers) {
     if (is_pattern_of_files(file)) {
       files_of_pattern(file);  // throws if there are none
     } else if (is_file_path(file) && !std::filesystem::exists(file, error)) {
-      throw std::runtime_error(fmt::format("layer \"{}\": there is no file {}", layer.name, file));
+      throw std::runtime_error(
+          error ? fmt::format("layer \"{}\": {}: {}", layer.name, file, error.message())
+                : fmt::format("layer \"{}\": there is no file {}", layer.name, file));
     }
   }
 }
@@ -98,13 +102,32 @@ void warn_of_other_changes(const Config& running, const Config& now) {
   if (!std::ranges::equal(running.styles, now.styles, is_same)) {
     spdlog::warn("styles have changed: restart the server to apply them");
   }
+  const auto has_same_files = [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second.files == b.second.files;
+  };
+  if (!std::ranges::equal(running.fonts, now.fonts, has_same_files)) {
+    spdlog::warn("fonts have changed: restart the server to apply them");
+  }
+}
+
+Config with_layers(const ServeArguments& arguments) {
+  LoadedConfig loaded = load_serve_config(arguments);
+  if (loaded.config.layers.empty()) {
+    throw UsageError(
+        arguments.config.empty()
+            ? "there are no layers: name files, or a configuration with [[layer]] in --config"
+            : "there are no layers: name files, or a [[layer]] in " + arguments.config);
+  }
+  return std::move(loaded.config);
 }
 
 LayerSource layer_source(const ServeArguments& arguments, const Config& running) {
   using ValueTables = std::map<std::string, ValueTableConfig>;
   const auto values = std::make_shared<ValueTables>();
   const auto layers = [arguments, running, values] {
-    Config now = configure(arguments);
+    Config now = with_layers(arguments);
+    // The server keeps its limit until it is restarted.
+    limit_zooms(now.layers, running.limits.zoom);
     check_files_exist(now.layers);
     warn_of_other_changes(running, now);
     *values = std::move(now.values);
@@ -136,15 +159,9 @@ LoadedConfig load_serve_config(const ServeArguments& arguments) {
 }
 
 Config configure(const ServeArguments& arguments) {
-  LoadedConfig loaded = load_serve_config(arguments);
-  if (loaded.config.layers.empty()) {
-    throw UsageError(
-        arguments.config.empty()
-            ? "there are no layers: name files, or a configuration with [[layer]] in --config"
-            : "there are no layers: name files, or a [[layer]] in " + arguments.config);
-  }
-  limit_zooms(loaded.config);
-  return std::move(loaded.config);
+  Config config = with_layers(arguments);
+  limit_zooms(config.layers, config.limits.zoom);
+  return config;
 }
 
 int run_serve(const ServeArguments& arguments) {

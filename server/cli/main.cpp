@@ -132,7 +132,7 @@ which low zooms need; --part 1-N/N makes it too.)";
 constexpr const char* kDiffFooter = R"(
 Examples:
   trapeze diff yesterday.trapeze parcels.gpkg --zooms 0-16
-  trapeze diff old.fgb new.fgb --zooms 12 --style 'color-by=use' --format geojson
+  trapeze diff old.fgb new.fgb --zooms 12 --style 'color-by=use&classes=forest:green' --format json
 
 OLD and NEW are two states of one layer, as source files or prepared files. A tile is listed if
 the geometry or style it is drawn from has changed, so every tile with a changed picture is
@@ -286,6 +286,11 @@ void add_drawing_settings(CLI::App& command, trapeze::ServeArguments& arguments)
   add_setting(command, arguments, "--workers", "server.workers", "N");
   add_setting(command, arguments, "--renderer", "server.renderer", "NAME");
   add_setting(command, arguments, "--device", "server.device", "DEVICE");
+}
+
+/// Options take effect in the order in which they are added: with this one last, it overrides the
+/// options for single settings, whichever they are.
+void add_set(CLI::App& command, trapeze::ServeArguments& arguments) {
   command
       .add_option_function<std::vector<std::string>>(
           "--set",
@@ -294,7 +299,8 @@ void add_drawing_settings(CLI::App& command, trapeze::ServeArguments& arguments)
               arguments.settings.push_back(parse_assignment(text));
             }
           },
-          "Any setting of the configuration, such as limits.connections=100; can be repeated")
+          "Any setting of the configuration, such as limits.connections=100; can be repeated, and "
+          "overrides the options for single settings")
       ->type_name("TABLE.KEY=VALUE")
       ->allow_extra_args(false);
 }
@@ -305,6 +311,7 @@ void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   add_setting(command, arguments, "--address", "server.address", "IP");
   add_setting(command, arguments, "--threads", "server.threads", "N");
   add_setting(command, arguments, "--web-root", "server.web_root", "DIR");
+  add_set(command, arguments);
 }
 
 void add_serve(CLI::App& app, trapeze::ServeArguments& arguments) {
@@ -366,6 +373,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
       ->add_option("--attributes", arguments.selection.attributes,
                    "The attributes to keep, separated by commas. Default: all")
       ->delimiter(',')
+      ->allow_extra_args(false)  // what follows is a FILE
       ->type_name("NAME,...");
   add_max_skipped(*prepare, arguments.max_skipped, "100%");
   prepare
@@ -387,6 +395,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
                    "Additional reference systems besides EPSG:3857, such as EPSG:2056; each gets "
                    "its own file with the extension .EPSG-2056.trapeze")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...");
   prepare
       ->add_option(
@@ -512,10 +521,12 @@ void add_seed(CLI::App& app, trapeze::SeedArguments& arguments) {
       app.add_subcommand("seed", "Draw all tiles of an area into an archive or folder");
   seed->footer(kSeedFooter);
   add_drawing_settings(*seed, arguments.serve);
+  add_set(*seed, arguments.serve);
   seed->add_option(
           "--layers", arguments.layers,
           "The layers of the tiles, separated by commas, the bottom layer first. Default: all")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...");
   seed->add_option("--style", arguments.style,
                    "Style parameters, as in the query of a URL, such as style=night&fill=teal")
@@ -618,7 +629,11 @@ std::string unknown_problem(const CLI::App& app, const CLI::App& command,
                             const std::string& argument) {
   const std::string name = argument.substr(0, argument.find('='));
   if (name.starts_with('-')) {
-    return "there is no option " + name + trapeze::did_you_mean(name, option_names(app, command));
+    const std::vector<std::string> names = option_names(app, command);
+    if (std::ranges::find(names, name) != names.end()) {
+      return name + " belongs behind " + command_path(command);
+    }
+    return "there is no option " + name + trapeze::did_you_mean(name, names);
   }
   const std::vector<std::string> commands = command_names(command);
   if (commands.empty()) return command_path(command) + " takes no further argument " + argument;

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 #include <stdexcept>
 #include <string_view>
 #include <unordered_map>
@@ -71,21 +72,36 @@ class ConfigReader {
         read_table(key.str(), node);
       } else {
         fail(key.source().begin,
-             fmt::format("unknown key {}; allowed here are server, viewer, limits, text, log, "
-                         "admin, styles, fonts, values, layer{}",
-                         key.str(),
-                         did_you_mean(key.str(), {"server", "viewer", "limits", "text", "log",
-                                                  "admin", "styles", "fonts", "values", "layer"})));
+             fmt::format(
+                 "unknown key {}; allowed here are server, viewer, limits, text, log, "
+                 "admin, changes, styles, fonts, values, layer{}",
+                 key.str(),
+                 did_you_mean(key.str(), {"server", "viewer", "limits", "text", "log", "admin",
+                                          "changes", "styles", "fonts", "values", "layer"})));
       }
     }
+    sort_problems();
   }
 
  private:
   void fail(const toml::source_position& position, std::string what) {
     loaded_.problems.push_back({position_text(path_, position), std::move(what)});
+    positions_.push_back(position);
   }
   void fail(const toml::node& node, std::string what) {
     fail(node.source().begin, std::move(what));
+  }
+
+  /// In the order of the file: the keys of a table are visited in alphabetical order.
+  void sort_problems() {
+    std::vector<std::size_t> order(positions_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(
+        order, [this](std::size_t a, std::size_t b) { return positions_[a] < positions_[b]; });
+    std::vector<ConfigProblem> sorted;
+    sorted.reserve(order.size());
+    for (const std::size_t i : order) sorted.push_back(std::move(loaded_.problems[i]));
+    loaded_.problems = std::move(sorted);
   }
 
   static bool is_table_of_settings(std::string_view name) {
@@ -210,9 +226,13 @@ class ConfigReader {
     return items;
   }
 
-  std::string expanded(const toml::node& node) {
+  static ExpandedText with_variables(const toml::node& node) {
     const auto variable = [](const std::string& name) { return std::getenv(name.c_str()); };
-    auto text = expand_variables(node.as_string()->get(), variable);
+    return expand_variables(node.as_string()->get(), variable);
+  }
+
+  std::string expanded(const toml::node& node) {
+    auto text = with_variables(node);
     if (!text.problem.empty()) fail(node, text.problem);
     return std::move(text.text);
   }
@@ -232,12 +252,17 @@ class ConfigReader {
 
   void read_layer(const toml::table& table) {
     LayerConfig layer;
-    const std::string name = table.get("name") != nullptr && table.get("name")->is_string()
-                                 ? fmt::format("layer.{}", table.get("name")->as_string()->get())
-                                 : "layer";
+    const toml::node* written = table.get("name");
+    // As in layer.name, under which others look for origins.
+    const std::string called =
+        written != nullptr && written->is_string() ? with_variables(*written).text : "";
+    const std::string name = called.empty() ? "layer" : "layer." + called;
     const std::size_t before = loaded_.problems.size();
     read_settings(table, layer_settings(), layer, name, "style");
-    if (const toml::node* style = table.get("style")) layer.style = read_layer_style(*style);
+    if (const toml::node* style = table.get("style")) {
+      layer.style = read_layer_style(*style);
+      keep_origin(name + ".style", *style);
+    }
     if (table.get("name") == nullptr) {
       fail(table, "every [[layer]] needs a name of 1 to 64 letters, digits, '_' or '-'");
     }
@@ -359,7 +384,12 @@ class ConfigReader {
       std::vector<std::string> known;
       for (const StyleParameter& each : style_parameters()) known.emplace_back(each.name);
       fail(key.source().begin,
-           fmt::format("a style does not know \"{}\"{}", key.str(), did_you_mean(name, known)));
+           parameter == nullptr
+               ? fmt::format("a style does not know \"{}\"{}", key.str(), did_you_mean(name, known))
+           : parameter->id == ParameterId::style
+               ? "a style cannot name another one"
+               : fmt::format("\"{}\" is for all layers, so it cannot be in the style of one",
+                             key.str()));
       return std::nullopt;
     }
     const auto text = query_text_of(node);
@@ -461,10 +491,12 @@ class ConfigReader {
       if (style.is_table()) layers.emplace_back(layer.str());
     }
     loaded_.config.styles.emplace(name, style_or_problem(node, pairs, layers));
+    keep_origin("styles." + name, node);
   }
 
   const std::string& path_;
   LoadedConfig& loaded_;
+  std::vector<toml::source_position> positions_;               // of the problems
   std::unordered_map<std::string, toml::source_index> lines_;  // of layers, by name
 };
 
@@ -532,14 +564,16 @@ std::string variable_of(const Setting<Config>& setting) {
 }
 
 /// Whether Kubernetes sets the variable in every container for a service with a name like
-/// trapeze-server or trapeze-admin: TRAPEZE_SERVER_SERVICE_HOST, TRAPEZE_SERVER_PORT_8080_TCP.
-bool is_service_link(std::string_view variable) {
+/// trapeze-server or trapeze-admin: TRAPEZE_SERVER_SERVICE_HOST, TRAPEZE_SERVER_PORT_8080_TCP, and
+/// TRAPEZE_SERVER_PORT, which has the name of a setting, with a URL such as tcp://10.0.0.1:80.
+bool is_service_link(std::string_view variable, std::string_view value) {
   constexpr std::string_view kPort = "_PORT_";
   const std::size_t port = variable.find(kPort);
   const std::string_view number =
       port == std::string_view::npos ? "" : variable.substr(port + kPort.size());
   return variable.find("_SERVICE_HOST") != std::string_view::npos ||
          variable.find("_SERVICE_PORT") != std::string_view::npos ||
+         (variable.ends_with("_PORT") && value.find("://") != std::string_view::npos) ||
          (!number.empty() && number.front() >= '0' && number.front() <= '9');
 }
 
@@ -568,6 +602,10 @@ void apply(const ConfigOverride& change, LoadedConfig& loaded) {
   const auto& setting = *found;
   const auto value = value_in(setting.type, change.value);
   if (value && assign(setting, loaded.config, *value)) {
+    // The items of a list in the file are replaced, too.
+    std::erase_if(loaded.origins, [&change](const auto& origin) {
+      return origin.first.starts_with(change.setting + '[');
+    });
     loaded.origins[change.setting] = change.origin;
     return;
   }
@@ -646,12 +684,12 @@ std::vector<ConfigOverride> environment_overrides(const char* const* environment
     const std::size_t equals = entry.find('=');
     if (!entry.starts_with(kVariablePrefix) || equals == std::string_view::npos) continue;
     const std::string name(entry.substr(0, equals));
+    const std::string value(entry.substr(equals + 1));
     const auto setting = std::ranges::find(config_settings(), name, variable_of);
     const bool is_setting = setting != config_settings().end();
     // Other programs may have variables of their own.
-    if (!is_setting && (!is_of_a_table(name) || is_service_link(name))) continue;
-    overrides.push_back(
-        {is_setting ? setting->name() : "", std::string(entry.substr(equals + 1)), name});
+    if (is_service_link(name, value) || (!is_setting && !is_of_a_table(name))) continue;
+    overrides.push_back({is_setting ? setting->name() : "", value, name});
   }
   return overrides;
 }

@@ -49,8 +49,8 @@ LoadedConfig load_config_text(std::string_view text, const std::string& path);
 
 /// The overrides in an environment, an array of "NAME=value" strings that ends with null: the
 /// variable TRAPEZE_TABLE_KEY for each setting TABLE.KEY. Variables that begin with TRAPEZE_TABLE_
-/// but match no setting are included without a setting, except those that Kubernetes sets for
-/// services with such names.
+/// but match no setting are included without a setting. Those that Kubernetes sets for services
+/// with such names are not included, whether they match or not.
 std::vector<ConfigOverride> environment_overrides(const char* const* environment);
 
 /// Reads a TOML file alone. Throws std::runtime_error with all problems, one per line.

@@ -17,6 +17,7 @@
 #include "core/layer/layer_contents.h"
 #include "core/layer/untested_layer.h"
 #include "server/base/content_hash.h"
+#include "server/data/layer_problems.h"
 #include "server/data/load_progress.h"
 #include "server/data/note_summary.h"
 #include "server/data/source_files.h"
@@ -38,13 +39,13 @@ void add_value(ContentHash& hash, const Value& value) {
   }
 }
 
-void log_notes(const LoadReport& report) {
+void log_notes(const std::string& what, const LoadReport& report) {
   const std::vector<std::string> lines = summarize_notes(report.notes);
   for (std::size_t i = 0; i < lines.size() && i < kMaxLoggedNotes; ++i) {
-    spdlog::warn(fmt::format("{}: {}", report.path, lines[i]));
+    spdlog::warn(fmt::format("{}: {}", what, lines[i]));
   }
   if (lines.size() < report.notes.size()) {
-    spdlog::warn(fmt::format("{}: `trapeze check` lists all notes", report.path));
+    spdlog::warn(fmt::format("{}: `trapeze check` lists all notes", what));
   }
 }
 
@@ -56,53 +57,55 @@ void log_missing_title(const ServedLayer& served) {
 }
 
 /// Logs problems of a layer in parts that do not prevent it from being served.
-void log_parts(const LoadReport& report, const PreparedParts& parts) {
-  spdlog::info(
-      fmt::format("{}: {} parts, each loaded when needed", report.path, parts.parts().size()));
+void log_parts(const std::string& what, const PreparedParts& parts) {
+  spdlog::info(fmt::format("{}: {} parts, each loaded when needed", what, parts.parts().size()));
   if (parts.overview() != nullptr || parts.parts().size() == 1) return;
   spdlog::warn(fmt::format(
       "{}: there is no overview, so a tile of a low zoom reads every part; `trapeze prepare "
       "--join` makes one",
-      report.path));
+      what));
 }
 
 void log_report(const ServedLayer& served) {
   const LoadReport& report = served.report;
+  // The source, and the grid if the layer is built for several.
+  const std::string what = served.config.grid.empty()
+                               ? report.path
+                               : fmt::format("{} in {}", report.path, served.config.grid);
   spdlog::info(fmt::format(
       "{}: {} of {} features, {} polygons, {} rings, {} vertices, {} trapezoids, {:.1f} MB, "
       "{:.2f} s ({})",
-      report.path, report.loaded, report.features, report.polygons, report.rings, report.vertices,
+      what, report.loaded, report.features, report.polygons, report.rings, report.vertices,
       served.trapezoids(), static_cast<double>(served.memory_of_tested()) / 1e6,
       report.total_seconds, report.origin()));
-  if (served.parts != nullptr) log_parts(report, *served.parts);
+  if (served.parts != nullptr) log_parts(what, *served.parts);
   if (report.taken_over > 0) {
-    spdlog::info(
-        fmt::format("{}: {} features are unchanged and reused", report.path, report.taken_over));
+    spdlog::info(fmt::format("{}: {} features are unchanged and reused", what, report.taken_over));
   }
   if (report.other_geometry > 0) {
-    spdlog::info(fmt::format("{}: {} features are not polygons and are not drawn", report.path,
+    spdlog::info(fmt::format("{}: {} features are not polygons and are not drawn", what,
                              report.other_geometry));
   }
   if (report.empty > 0) {
     spdlog::info(fmt::format("{}: {} polygons are smaller than the grid, or outside of the world",
-                             report.path, report.empty));
+                             what, report.empty));
   }
   const CoverageCounts& coverage = report.coverage;
   if (coverage.groups > 0) {
     spdlog::info(fmt::format(
         "{}: {} features share borders, in {} groups: {} shared edges, {} junctions; {} features "
         "overlap others by too much and are simplified separately",
-        report.path, coverage.features, coverage.groups, coverage.shared_edges, coverage.junctions,
+        what, coverage.features, coverage.groups, coverage.shared_edges, coverage.junctions,
         coverage.apart));
   }
   if (report.repaired > 0 || report.skipped > 0 || report.coverage.overlaps > 0) {
-    spdlog::warn(fmt::format("{}: {} features repaired, {} skipped, {} pairs overlap", report.path,
+    spdlog::warn(fmt::format("{}: {} features repaired, {} skipped, {} pairs overlap", what,
                              report.repaired, report.skipped, report.coverage.overlaps));
   }
   for (const std::string& warning : report.warnings)
-    spdlog::warn(fmt::format("{}: {}", report.path, warning));
-  log_notes(report);
-  if (report.loaded == 0) spdlog::warn(fmt::format("{}: contains no polygon to draw", report.path));
+    spdlog::warn(fmt::format("{}: {}", what, warning));
+  log_notes(what, report);
+  if (report.loaded == 0) spdlog::warn(fmt::format("{}: contains no polygon to draw", what));
 }
 
 /// The combined progress of layers that load at the same time: the mean of their shares.
@@ -241,6 +244,9 @@ LoadedLayer open_with(const LayerConfig& layer, OpenOptions options, const Serve
 /// `progress` is called by the calling thread.
 ServedLayer read_layer(const LayerConfig& layer, const ServedLayer* earlier,
                        const std::function<void(double)>& progress) {
+  if (const std::string problem = find_topology_problem(layer); !problem.empty()) {
+    throw std::runtime_error(problem);
+  }
   ServedLayer served;
   served.config = layer;
   served.source_state = state_of_sources(layer);  // before reading: later changes are noticed
@@ -248,12 +254,6 @@ ServedLayer read_layer(const LayerConfig& layer, const ServedLayer* earlier,
   options.progress = progress;
   if (earlier != nullptr) options.earlier_parts = earlier->parts;
   LoadedLayer loaded = open_with(layer, options, earlier);
-  if (loaded.parts != nullptr && layer.has_fast_topology()) {
-    throw std::runtime_error(
-        fmt::format("{}: a layer in parts is not served with topology=fast, for which it would be "
-                    "built again",
-                    loaded.report.path));
-  }
   served.revision = loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
   served.layer = std::move(loaded.layer);
   if (layer.has_fast_topology()) served.untested = build_without_topology_test(*served.layer);

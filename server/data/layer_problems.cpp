@@ -1,10 +1,15 @@
 #include "server/data/layer_problems.h"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/open_layer.h"
 #include "core/io/prepared/prepared_parts.h"
+#include "core/io/source/change_feed.h"
 #include "server/data/dataset.h"
 
 namespace trapeze {
@@ -37,7 +42,25 @@ std::string find_prepared_excess(const LayerConfig& layer) {
   return find_excess(open_layer(file, how_to_open(layer)).report, layer.max_skipped);
 }
 
+/// A message if the changes of a live layer cannot be queried; empty if they can.
+std::string find_live_problem(const LayerConfig& layer) {
+  if (layer.live_query.empty()) return {};
+  try {
+    const ChangeFeed feed(layer.file, layer.live_query);
+    return {};
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
+
+std::string find_topology_problem(const LayerConfig& layer) {
+  if (!is_pattern_of_files(layer.file_to_open()) || !layer.has_fast_topology()) return {};
+  return fmt::format(
+      "{}: a layer in parts is not served with topology=fast, for which it would be built again",
+      layer.file_to_open());
+}
 
 std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer) {
   std::vector<LayerProblem> problems;
@@ -45,6 +68,14 @@ std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer) {
     const auto index =
         found.part == OpenPart::attributes ? std::optional(found.index) : std::nullopt;
     problems.push_back({key_of(found.part, layer), index, std::move(found.what), found.is_warning});
+  }
+  if (std::ranges::all_of(problems, &LayerProblem::is_warning)) {
+    std::string live = find_live_problem(layer);
+    if (!live.empty()) problems.push_back({"live_query", std::nullopt, std::move(live), false});
+  }
+  if (std::string topology = find_topology_problem(layer); !topology.empty()) {
+    const char* key = layer.fast_topology ? "fast_topology" : "style";
+    problems.push_back({key, std::nullopt, std::move(topology), false});
   }
   if (!problems.empty()) return problems;  // a prepared file has no warnings
   std::string excess = find_prepared_excess(layer);

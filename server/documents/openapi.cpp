@@ -364,11 +364,11 @@ Json post_json(const Route& route) {
                                 : "The id of the style",
                        route.content_type)},
       {"400", problem_response_json()},
-      {"403", problem_response_json()}};
+      {"403", problem_response_json()},
+      {"413", problem_response_json()},
+      {"429", problem_response_json()}};
   if (is_table) {
-    for (const char* status : {"413", "415", "429", "503"}) {
-      post["responses"][status] = problem_response_json();
-    }
+    for (const char* status : {"415", "503"}) post["responses"][status] = problem_response_json();
   }
   return post;
 }

@@ -43,6 +43,10 @@ class ConfigCheck {
     check_files();
     check_renderer();
     check_addresses();
+    if (!config_.changes.command.empty() && config_.changes.zooms.empty()) {
+      findings_.warnings.push_back(
+          found("changes.command", "is never run: it needs changes.zooms"));
+    }
     for (const auto& [name, table] : config_.values) {
       if (!table.file.empty()) note(fmt::format("values.{}.file", name), find_table_problem(table));
     }
@@ -107,7 +111,8 @@ class ConfigCheck {
     if (config_.admin.port == 0) return;
     check_address("admin.address", config_.admin.address);
     const bool is_same = config_.admin.address == config_.server.address ||
-                         is_any(config_.admin.address) || is_any(config_.server.address);
+                         is_among(config_.admin.address, config_.server.address) ||
+                         is_among(config_.server.address, config_.admin.address);
     if (is_same && config_.admin.port == config_.server.port) {
       note("admin.port", "is the port of the server: each address needs one of its own");
     }
@@ -120,7 +125,10 @@ class ConfigCheck {
     note(setting, failure_of([&options] { HttpServer(options, {}); }));
   }
 
-  static bool is_any(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
+  /// "::" are all addresses, "0.0.0.0" those of IPv4, which have a '.' in IPv6, too.
+  static bool is_among(const std::string& address, const std::string& all) {
+    return all == "::" || (all == "0.0.0.0" && address.find('.') != std::string::npos);
+  }
 
   /// A style that names missing tables or fonts draws nothing.
   void check_names(const std::string& setting, const StyleQuery& style) {
@@ -137,10 +145,11 @@ class ConfigCheck {
 
   void check_layer(const LayerConfig& layer) {
     if (layer.file_to_open().empty()) return;  // already a problem of reading the configuration
+    // Its name may be missing or wrong, which is a problem of reading the configuration too.
+    const std::string table = layer.name.empty() ? "layer" : fmt::format("layer.{}", layer.name);
     for (const LayerProblem& problem : find_layer_problems(layer)) {
       auto& list = problem.is_warning ? findings_.warnings : findings_.problems;
-      list.push_back(
-          found(fmt::format("layer.{}.{}", layer.name, problem.key), problem.what, problem.index));
+      list.push_back(found(fmt::format("{}.{}", table, problem.key), problem.what, problem.index));
     }
   }
 

@@ -163,6 +163,8 @@ Service::Service(const Config& config, LayerSource source)
     what.zooms = *zooms;
     what.command = config.changes.command;
     changes_ = std::make_unique<ChangeLog>(std::move(what));
+  } else if (!config.changes.command.empty()) {
+    spdlog::warn("changes.command is never run: it needs changes.zooms");
   }
   if (config.admin.port != 0) open_admin(config);
   reloader_ = std::make_unique<Reloader>(

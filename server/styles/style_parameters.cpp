@@ -440,8 +440,10 @@ std::optional<ParameterValue> parse_word(std::string_view text, KnownWords known
   return std::string(text);
 }
 
-/// The canonical form has each word once, in the order of the table.
+/// The canonical form has each word once, in the order of the table. None at all override those of
+/// a named style.
 std::optional<ParameterValue> parse_words(std::string_view text, KnownWords known) {
+  if (text.empty()) return std::string();
   const auto given = split(text, ',');
   for (const std::string_view word : given) {
     if (std::ranges::find(known, word) == known.end()) return std::nullopt;

@@ -9,6 +9,7 @@ namespace trapeze {
 char find_delimiter(std::string_view text) {
   bool is_quoted = false;
   bool has_semicolon = false;
+  text.remove_prefix(std::min(text.find_first_not_of("\r\n"), text.size()));  // as next() does
   for (const char c : text) {
     if (c == '"') is_quoted = !is_quoted;
     if (is_quoted) continue;

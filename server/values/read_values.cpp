@@ -88,6 +88,11 @@ bool is_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+/// Whether the text is a year, as which many tables name a column.
+bool is_year(std::string_view text) {
+  return text.size() == 4 && text >= "1800" && text <= "2199" && is_number(text);
+}
+
 /// The indexes of key and value among the columns.
 struct Places {
   std::size_t key = 0;
@@ -151,11 +156,12 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
   }
   const auto places = find_places(names, options.columns);
   if (!places) return places.problem();
-  // Otherwise this row would be lost.
-  if (is_number(names[places->value])) {
+  // Otherwise this row would be lost. A year that was asked for names a column.
+  const std::string& value_name = names[places->value];
+  if (is_number(value_name) && !(value_name == options.columns.value && is_year(value_name))) {
     return Problem{400, fmt::format("The first line must name the columns, but \"{}\" looks like a "
                                     "value: add a header line such as \"key,value\".",
-                                    names[places->value])};
+                                    value_name)};
   }
   ValueTableBuilder builder(
       {names[places->key].substr(0, kMaxNameBytes), names[places->value].substr(0, kMaxNameBytes)},

@@ -48,6 +48,11 @@ test("a place is written to less than a pixel at every zoom", () => {
   }
 });
 
+test("no debug marks at all are kept, because a named style may have some", () => {
+  const view = view_of({ place: { zoom: 1, lat: 0, lon: 0 }, shared: new Map([["style", "mesh"], ["debug", ""]]) });
+  assert.deepEqual(parse_hash(format_hash(view)), view);
+});
+
 test("all layers switched off is not the same as nothing said", () => {
   const off = format_hash(view_of({ place: { zoom: 1, lat: 0, lon: 0 }, on: [] }));
   assert.deepEqual(parse_hash(off).on, []);

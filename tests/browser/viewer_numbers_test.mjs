@@ -45,6 +45,11 @@ label_format = ","
 file = "${join(folder, "names.csv")}"
 attribution = "Named by hand"
 languages = ["de"]
+[styles.steps.columns]
+values = "people"
+color_by = "value"
+breaks = [3000, 6000]
+ramp = "Reds"
 [styles.named.columns]
 values = "names"
 label = "value"
@@ -105,6 +110,19 @@ test("a pasted table colours the layer, says what does not match, and is in the 
   await again.page.context().close();
   await form.getByRole("button", { name: "Take away" }).click();
   await page.waitForFunction(() => !location.hash.includes("columns."));
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("the breaks of joined values survive that the layer is switched off and on", async () => {
+  const { page, seen, form } = await open("#5/45/6&on=columns&style=steps");
+  await page.waitForFunction(() => document.querySelector("#legend-body h2"));
+  const rows = await legend_rows(page);
+  await form.getByLabel("Columns", { exact: true }).uncheck();
+  await form.getByLabel("Columns", { exact: true }).check();
+  await page.waitForFunction(() => document.querySelector("#legend-body h2"));
+  assert.deepEqual(await legend_rows(page), rows);
+  assert.ok(!(await hash_of(page)).includes("columns."));
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });

@@ -6,10 +6,10 @@
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kWord = "password";
 constexpr std::string_view kMask = "***";
 constexpr std::string_view kSpaces = " \t\n\v\f\r";
 constexpr std::string_view kEndsOfValue = " \t\n\v\f\r&";
+constexpr std::string_view kEndOfOdbc = ";";
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -27,11 +27,12 @@ std::size_t begin_of_value(std::string_view text, std::size_t at) {
   return std::min(text.find_first_not_of(kSpaces, sign + 1), text.size());
 }
 
-/// An unclosed quote extends to the end.
-std::size_t end_of_value(std::string_view text, std::size_t begin) {
-  if (text[begin] != '\'') {
-    return std::min(text.find_first_of(kEndsOfValue, begin), text.size());
+/// An unclosed quote or brace extends to the end.
+std::size_t end_of_value(std::string_view text, std::size_t begin, std::string_view ends) {
+  if (ends == kEndOfOdbc && text[begin] == '{') {
+    return std::min(text.find('}', begin), text.size() - 1) + 1;
   }
+  if (text[begin] != '\'') return std::min(text.find_first_of(ends, begin), text.size());
   for (std::size_t i = begin + 1; i < text.size(); ++i) {
     if (text[i] == '\'') return i + 1;
     if (text[i] == '\\') ++i;
@@ -39,15 +40,16 @@ std::size_t end_of_value(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// For a connection string, or the query of a URL.
-std::string without_assigned_passwords(std::string_view text) {
+/// For a connection string, or the query of a URL, in which passwords are called `word`.
+std::string without_assigned_passwords(std::string_view text, std::string_view word,
+                                       std::string_view ends) {
   const std::string lower = lower_case(text);
   std::string masked;
   std::size_t done = 0;
-  for (std::size_t at = 0; (at = lower.find(kWord, at)) != std::string::npos;) {
-    at += kWord.size();
+  for (std::size_t at = 0; (at = lower.find(word, at)) != std::string::npos;) {
+    at += word.size();
     const std::size_t begin = begin_of_value(text, at);
-    const std::size_t end = begin == text.size() ? begin : end_of_value(text, begin);
+    const std::size_t end = begin == text.size() ? begin : end_of_value(text, begin, ends);
     if (begin == end) continue;
     masked.append(text.substr(done, begin - done)).append(kMask);
     at = done = end;
@@ -75,7 +77,8 @@ std::string without_user_passwords(std::string_view text) {
 }  // namespace
 
 std::string name_of_source(const std::string& path) {
-  return without_user_passwords(without_assigned_passwords(path));
+  const std::string masked = without_assigned_passwords(path, "password", kEndsOfValue);
+  return without_user_passwords(without_assigned_passwords(masked, "pwd", kEndOfOdbc));
 }
 
 }  // namespace trapeze

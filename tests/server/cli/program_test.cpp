@@ -322,7 +322,7 @@ TEST(ProgramTest, ReadsItsConfigurationAgainOnSighup) {
   Program program(arguments);
   const std::uint16_t port = program.port();
   EXPECT_TRUE(wait_for(port, "/tiles/one/0/0/0.png"));
-  write("two", "queue = 7\n");
+  write("two", "queue = 7\n[fonts.a]\nfiles = [\"a.ttf\"]\n");
   program.send_signal(SIGHUP);
   EXPECT_TRUE(wait_for(port, "/tiles/two/0/0/0.png"));
   EXPECT_EQ(RawClient(port).get("/tiles/one/0/0/0.png").status, 404);
@@ -337,6 +337,7 @@ TEST(ProgramTest, ReadsItsConfigurationAgainOnSighup) {
   EXPECT_EQ(program.wait(), 0);
   EXPECT_THAT(program.output(),
               AllOf(HasSubstr("SIGHUP"), HasSubstr("server.queue has changed"),
+                    HasSubstr("fonts have changed"),
                     HasSubstr(path + ":3:1: unknown key server.prot"), HasSubstr("stopped")));
   std::filesystem::remove(path);
 }
@@ -458,6 +459,8 @@ TEST_F(ConfigCheckTest, WhatItFindsKeepsTheServerFromStarting) {
        ":5:14: ", "gaps can be closed only where coverage is auto or on"},
       {"file = \"map.geojson\"\nmerge = 4\nmerge_by = \"colour\"",
        ":5:12: ", "has no attribute \"colour\" to merge by; it has: "},
+      {"file = \"map.gpkg\"\nsource_layer = \"map\"\nlive_query = \"SELECT fid, fid FROM map\"",
+       ":5:14: ", "live_query has no {since}"},
       {"prepared = \"nosuch.trapeze\"", ":3:12: ", "layer.a.prepared: "},
       {"prepared = \"words.txt\"", ":3:12: ", "contains no vector data"},
       {"prepared = \"changed.trapeze\"", ":3:12: ", "is older than its source: "},

@@ -239,8 +239,11 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
       {"[server]\nprot = 1", ":2:1: ", "did you mean port?"},
       {"sevrer = 1", ":1:1: ", "did you mean server?"},
       {"sevrer = 1", ":1:1: ",
-       "unknown key sevrer; allowed here are server, viewer, limits, text, log, admin, styles, "
-       "fonts, values, layer"},
+       "unknown key sevrer; allowed here are server, viewer, limits, text, log, admin, changes, "
+       "styles, fonts, values, layer"},
+      {"change = 1", ":1:1: ", "did you mean changes?"},
+      {"[[layer]]\nname = \"a\"\nfile = \"a\"\nstyle.background = \"red\"",
+       ":4:7: ", "\"background\" is for all layers"},
       {"[values.a]\nkey = \"k\"", ":1:1: ", "values \"a\" need a file"},
       {"[values.a]\nfile = \"a\"\ncolumn = 1", ":3:1: ", "unknown key values.a.column"},
       {"[values]\na = 1", ":2:5: ", "[values.NAME]"},
@@ -311,9 +314,9 @@ TEST_F(ConfigTest, TellsAllThatIsWrongInTheOrderOfTheFile) {
   const LoadedConfig loaded = load_config(path_, {});
   std::vector<std::string> where;
   for (const ConfigProblem& problem : loaded.problems) where.push_back(problem.where);
-  EXPECT_THAT(where, ::testing::UnorderedElementsAre(path_ + ":2:8", path_ + ":3:1", path_ + ":5:9",
-                                                     path_ + ":7:9", path_ + ":9:8",
-                                                     path_ + ":10:12", path_ + ":11:18"));
+  EXPECT_THAT(where,
+              ::testing::ElementsAre(path_ + ":2:8", path_ + ":3:1", path_ + ":5:9", path_ + ":7:9",
+                                     path_ + ":9:8", path_ + ":10:12", path_ + ":11:18"));
   EXPECT_EQ(loaded.config.server.queue, 5u) << "what is right is read";
   EXPECT_EQ(loaded.config.server.port, 8080) << "what is wrong is the default";
   EXPECT_EQ(loaded.config.layers.size(), 2u);
@@ -353,6 +356,7 @@ TEST_F(ConfigTest, AMistypedVariableIsAnErrorWithTheNearestSetting) {
   const char* const environment[] = {"TRAPEZE_SERVER_PROT=80",
                                      "TRAPEZE_LIMITS_=1",
                                      "TRAPEZE_SERVER_SERVICE_HOST=10.0.0.1",
+                                     "TRAPEZE_SERVER_PORT=tcp://10.0.0.1:80",
                                      "TRAPEZE_LOG_PORT_80_TCP_ADDR=10.0.0.1",
                                      "TRAPEZE_DATA=/data",
                                      nullptr};
@@ -375,6 +379,16 @@ TEST_F(ConfigTest, WrongOverridesAreErrorsThatNameThem) {
                     HasSubstr("takes true or false\n--port"), HasSubstr("a number from 1"),
                     HasSubstr("with commas between them")));
   EXPECT_EQ(loaded.problems.size(), 5u);
+}
+
+TEST_F(ConfigTest, OriginsAreThoseOfTheValuesInUse) {
+  setenv("TRAPEZE_TEST_NAME", "a", 1);
+  std::ofstream(path_) << "text.fonts = [\"a.ttf\"]\n[[layer]]\nname = \"${TRAPEZE_TEST_NAME}\"\n"
+                       << "file = \"a.fgb\"\n";
+  const LoadedConfig loaded = load_config(path_, {{"text.fonts", "b.ttf", "TRAPEZE_TEXT_FONTS"}});
+  unsetenv("TRAPEZE_TEST_NAME");
+  EXPECT_EQ(loaded.origin_of("layer.a.file"), path_ + ":4:8");
+  EXPECT_EQ(loaded.origin_of("text.fonts", 0), "TRAPEZE_TEXT_FONTS");
 }
 
 TEST_F(ConfigTest, StringsMayHoldVariables) {

@@ -26,7 +26,8 @@ std::vector<Record> records_of(std::string_view text) {
 }
 
 TEST(CsvReaderTest, ReadsFieldsBetweenCommasSemicolonsOrTabs) {
-  for (const char* text : {"a,b\n1,2\n", "a;b\n1;2", "a\tb\r\n1\t2\r\n", "\n\na,b\r1,2\r"}) {
+  for (const char* text :
+       {"a,b\n1,2\n", "a;b\n1;2", "a\tb\r\n1\t2\r\n", "\n\na,b\r1,2\r", "\r\n\na\tb\n1\t2\n"}) {
     EXPECT_THAT(records_of(text), ElementsAre(Record{"a", "b"}, Record{"1", "2"})) << text;
   }
 }

@@ -115,6 +115,8 @@ TEST(ReadValuesTest, RefusesWhatIsNoTable) {
   EXPECT_THAT(rows_of("k,v\n"), HasSubstr("no row"));
   EXPECT_THAT(rows_of("k\na\n"), HasSubstr("two columns"));
   EXPECT_THAT(rows_of("FRA,1\nDEU,2\n"), HasSubstr("\"1\" looks like a value"));
+  EXPECT_THAT(rows_of("k,2020\na,1\n"), HasSubstr("\"2020\" looks like a value"));
+  EXPECT_EQ(rows_of("k,2019,2020\na,1,2\n", {{"k", "2020"}}), "a=2");
   EXPECT_THAT(rows_of("k,v\na,1\nb\n"), HasSubstr("Line 3 of the table has 1 fields"));
   EXPECT_THAT(rows_of("k,v\n\xff\xfe,1\n"), HasSubstr("Line 2 of the table is not UTF-8"));
   EXPECT_THAT(rows_of("k,v\n\xed\xa0\x80,1\n"), HasSubstr("not UTF-8"));

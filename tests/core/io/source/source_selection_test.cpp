@@ -263,6 +263,9 @@ TEST(NameOfSourceTest, HidesPasswordsAndNothingElse) {
             "postgresql://me:***@db:5432/maps");
   EXPECT_EQ(name_of_source("postgresql://db/maps?user=me&password=secret&x=1"),
             "postgresql://db/maps?user=me&password=***&x=1");
+  EXPECT_EQ(name_of_source("MSSQL:server=db;uid=me;PWD=se cret;database=x"),
+            "MSSQL:server=db;uid=me;PWD=***;database=x");
+  EXPECT_EQ(name_of_source("MSSQL:uid=me;pwd={a;b};database=x"), "MSSQL:uid=me;pwd=***;database=x");
   EXPECT_EQ(name_of_source("/vsicurl/https://me:secret@example.org/a.fgb"),
             "/vsicurl/https://me:***@example.org/a.fgb");
 }
