@@ -34,9 +34,10 @@ struct GapClosing {
 /// Makes borders of different features coincide where they are at most `metres` apart on the
 /// ground; 0 < metres <= kWidestGap.
 ///
-/// * A vertex moves by no more than that, and not to a place where one of its features already has
-///   a vertex, so the shape of a feature is not simplified. The edges beside it may bend by as much
-///   again.
+/// * A vertex moves by no more than that, and only to a vertex such that each of the two has a
+///   feature that the other does not have. So details of one feature, or of a border of two, are
+///   kept; but where a feature is that narrow between two others, its sides are joined. The edges
+///   beside a vertex may bend by as much again.
 /// * No feature changes its area by more than the length of its boundary times the distance, and no
 ///   two features come to overlap by more than before, except for a strip of one cell. Features
 ///   that would, and those so narrow that their shape might be lost, stay unchanged, together with

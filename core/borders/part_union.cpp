@@ -25,6 +25,7 @@ struct Chain {
 struct PartSegments {
   std::vector<Segment> segments;
   std::vector<std::uint32_t> part_of;
+  std::vector<std::size_t> ring_begins;  // indices of segments
   std::vector<Chain> chains;
 
   PartSegments(const Rings& rings, std::span<const std::uint32_t> part_ends) {
@@ -41,6 +42,7 @@ struct PartSegments {
   static constexpr std::size_t kChain = 32;
 
   void add_ring(std::span<const Point> ring, std::uint32_t part) {
+    if (!ring.empty()) ring_begins.push_back(segments.size());
     for (std::size_t i = 0; i < ring.size(); ++i) {
       if (i % kChain == 0) chains.push_back({Box(), segments.size(), segments.size()});
       segments.emplace_back(ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]);
@@ -107,7 +109,9 @@ bool do_parts_meet(const PartSegments& parts, Steps& steps) {
   return do_any;
 }
 
-/// Whether parts whose boundaries do not meet lie within others: one point of each decides.
+/// Whether parts whose boundaries do not meet lie within others, even in part: one point of each
+/// ring decides. Rings of a part may be anywhere, even outside its first one. Where parts overlap,
+/// some ring lies within exactly one other part.
 bool do_parts_contain_others(const PartSegments& parts, Steps& steps) {
   struct Probe {
     Point point;
@@ -115,10 +119,8 @@ bool do_parts_contain_others(const PartSegments& parts, Steps& steps) {
     bool is_within = false;  // an odd number of segments of other parts is left of it
   };
   std::vector<Probe> probes;
-  for (std::size_t i = 0; i < parts.segments.size(); ++i) {
-    if (i == 0 || parts.part_of[i] != parts.part_of[i - 1]) {
-      probes.push_back({parts.segments[i].first, parts.part_of[i]});
-    }
+  for (const std::size_t begin : parts.ring_begins) {
+    probes.push_back({parts.segments[begin].first, parts.part_of[begin]});
   }
   std::sort(probes.begin(), probes.end(),
             [](const Probe& a, const Probe& b) { return is_above(a.point, b.point); });

@@ -72,6 +72,7 @@ void VisibleParts::begin(const MeshView& mesh) {
   mesh_ = mesh;
   parts_.clear();
   last_ = 0;
+  pending_.clear();  // something is left if it was cancelled
 }
 
 void VisibleParts::add(std::uint32_t trapezoid) {

@@ -130,10 +130,11 @@ DrawTimes GlRenderer::draw(std::span<const MaskTask> tasks) {
 }
 
 void GlRenderer::release_memory() {
-  indices_ = {};
-  batches_ = {};
-  bands_ = {};
-  sums_ = {};
+  // {} would assign an empty list, which keeps the memory of a vector.
+  indices_ = std::vector<std::uint32_t>();
+  batches_ = std::vector<Batch>();
+  bands_ = std::vector<Band>();
+  sums_ = std::vector<std::int64_t>();
   try {
     release_device_memory();
   } catch (const std::exception&) {

@@ -116,22 +116,27 @@ struct Tinted {
 };
 
 /// Sums tints in proportion to the areas that they cover: exact along scan lines, of which there
-/// are several per pixel.
+/// are several per pixel. For some rows of a picture, which bounds its memory.
 class TintSum {
  public:
-  explicit TintSum(const Picture& picture)
-      : width_(picture.width), height_(picture.height), pixels_(picture.pixels.size()) {}
+  TintSum(int width, int first_row, int rows)
+      : width_(width),
+        first_row_(first_row),
+        height_(rows),
+        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows)) {}
 
   void add(const MeshView& mesh, const MeshTrapezoid& t, const View& view, Rgba tint) {
     const Position top = position_of(mesh.vertices[t.top], view);
     const Position bottom = position_of(mesh.vertices[t.bottom], view);
-    const double rows = static_cast<double>(height_) * kRowsPerPixel;
+    const double least = static_cast<double>(first_row_) * kRowsPerPixel;
+    const double most = least + static_cast<double>(height_) * kRowsPerPixel;
     // Scan lines whose middles are between top and bottom.
-    const auto first = std::clamp(std::ceil(top.y * kRowsPerPixel - 0.5), 0.0, rows);
-    const auto end = std::clamp(std::ceil(bottom.y * kRowsPerPixel - 0.5), 0.0, rows);
+    const auto first = std::clamp(std::ceil(top.y * kRowsPerPixel - 0.5), least, most);
+    const auto end = std::clamp(std::ceil(bottom.y * kRowsPerPixel - 0.5), least, most);
     for (int row = static_cast<int>(first); row < static_cast<int>(end); ++row) {
       const double y = (row + 0.5) / kRowsPerPixel;
-      add_run(row / kRowsPerPixel, x_at(mesh, t.left, y, view), x_at(mesh, t.right, y, view), tint);
+      add_run(row / kRowsPerPixel - first_row_, x_at(mesh, t.left, y, view),
+              x_at(mesh, t.right, y, view), tint);
     }
   }
 
@@ -144,7 +149,7 @@ class TintSum {
           return static_cast<std::uint8_t>(std::lround(sum / tinted.share));
         };
         const Rgba colour{mean(tinted.r), mean(tinted.g), mean(tinted.b), kTintOpacity};
-        blend(picture, column, row, colour, std::min(tinted.share, 1.0));
+        blend(picture, column, first_row_ + row, colour, std::min(tinted.share, 1.0));
       }
     }
   }
@@ -178,6 +183,7 @@ class TintSum {
   }
 
   int width_;
+  int first_row_;
   int height_;
   std::vector<Tinted> pixels_;
 };
@@ -261,11 +267,14 @@ void mark_vertices(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
 
 void mark_faces(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
                 const FeatureOf& feature_of, const View& view, Picture& picture) {
-  TintSum sum(picture);
-  for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    sum.add(mesh, mesh.trapezoids[i], view, tint_of(feature_of(i)));
-  });
-  sum.blend_into(picture);
+  constexpr int kRows = 256;
+  for (int first = 0; first < picture.height; first += kRows) {
+    TintSum sum(picture.width, first, std::min(kRows, picture.height - first));
+    for_each_trapezoid(ranges, [&](std::uint32_t i) {
+      sum.add(mesh, mesh.trapezoids[i], view, tint_of(feature_of(i)));
+    });
+    sum.blend_into(picture);
+  }
 }
 
 void mark_junctions(const MeshView& mesh, std::span<const TrapezoidRange> ranges,

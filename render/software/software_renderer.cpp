@@ -107,14 +107,14 @@ void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
   task.out->begin(view.width, view.height);
   const Frame frame(view);
   bool is_wanted = true;
-  {
-    const Stopwatch stopwatch(times.draw_ms);
-    for (const MeshPart& part : task.parts) {
-      is_wanted = is_wanted && add(part, frame, task.cancellation);
-    }
-  }
-  const Stopwatch stopwatch(times.resolve_ms);
   try {
+    {
+      const Stopwatch stopwatch(times.draw_ms);
+      for (const MeshPart& part : task.parts) {
+        is_wanted = is_wanted && add(part, frame, task.cancellation);
+      }
+    }
+    const Stopwatch stopwatch(times.resolve_ms);
     resolve(*task.out);
   } catch (...) {
     release_memory();  // so that no areas remain for the next picture
@@ -129,9 +129,11 @@ std::string SoftwareRenderer::description() const {
 
 void SoftwareRenderer::release_memory() {
   width_ = height_ = 0;
-  differences_ = {};
+  added_ = 0;
+  // {} would assign an empty list, which keeps the memory of a vector.
+  differences_ = std::vector<std::int32_t>();
   touched_ = {};
-  sums_ = {};
+  sums_ = std::vector<std::int64_t>();
 }
 
 void SoftwareRenderer::prepare(const View& view) {

@@ -144,6 +144,7 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
 
 std::uint64_t drawing_cost(const TilePlan& plan) {
   std::uint64_t cost = pixels_of(plan.view) / kPixelsPerSide;
+  if (plan.debug.any()) cost += pixels_of(plan.view) * kSidesPerMarkedPixel;
   for (const LayerPaint& paint : plan.layers) {
     for (const View& copy : views_of_copies(plan.view, reach_of_lines(plan, paint))) {
       cost += cost_of_layer(plan, paint, copy);

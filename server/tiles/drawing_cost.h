@@ -23,6 +23,7 @@ constexpr std::uint64_t kSidesPerGrownPixel = 40;        // grow by this per pix
 constexpr std::uint64_t kSidesPerPartSeenThrough = 64;
 constexpr std::uint64_t kSidesPerProjectedTrapezoid = 2;  // in plate carree
 constexpr std::uint64_t kSidesPerMarkedTrapezoid = 32;    // for debug=mesh and similar
+constexpr std::uint64_t kSidesPerMarkedPixel = 1;         // drawn one by one, not as runs
 
 /// An estimate from the indexes alone, see MeshIndex::estimate(): takes microseconds for most
 /// tiles, milliseconds for millions of trapezoids. Never lower for a picture that shows more or has

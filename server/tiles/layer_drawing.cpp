@@ -243,6 +243,7 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   layer_ = nullptr;
   has_pieces_ = pieces.size() > 1;
   least_side_ = std::max(1.0, style().grow * plan.scale);
+  scale_ = plan.scale;
   view_ = view;
   class_count_ = 0;
   line_count_ = 0;
@@ -1028,6 +1029,11 @@ PaintedLayer LayerDrawing::painted() {
   for (std::size_t i = 0; i < line_count_; ++i) {
     painted_lines_.push_back({&lines_[i].mask, lines_[i].colour});
   }
+  // Outlines of highlighted features, whose class is the last one, are above all others: which of
+  // the two were met first differs from tile to tile.
+  const Rgba uppermost = style().paints.back().stroke;
+  std::ranges::stable_sort(painted_lines_, {},
+                           [&](const PaintedClass& line) { return line.colour == uppermost; });
   return {painted_classes_, has_pattern() ? &pattern_ : nullptr, style().pattern.colour,
           painted_lines_, style().opacity};
 }
@@ -1049,9 +1055,11 @@ void LayerDrawing::add_pattern_to(ContentHash& hash, const View& picture) const 
   hash.add(kPatternNames.name_of(pattern.kind));
   hash.add(to_hex(pattern.colour));
   for (const double length :
-       {pattern.size, pattern.angle, pattern.width, picture.cells_per_pixel}) {
+       {pattern.size, pattern.angle, pattern.width, picture.cells_per_pixel, scale_}) {
     hash.add(std::bit_cast<std::uint64_t>(length));
   }
+  // Where the world repeats, patterns are adapted to it.
+  hash.add(picture.projection == Projection::plane ? std::uint64_t{1} : std::uint64_t{0});
   hash.add(static_cast<std::uint64_t>(picture.origin_x));
   hash.add(static_cast<std::uint64_t>(picture.origin_y));
 }
@@ -1060,6 +1068,7 @@ void LayerDrawing::add_lines_to(ContentHash& hash) const {
   const Stroke& stroke = style().stroke;
   hash.add(kLineJoinNames.name_of(stroke.join));
   hash.add(std::bit_cast<std::uint64_t>(stroke.width));
+  hash.add(std::bit_cast<std::uint64_t>(scale_));
   hash.add(stroke.dashes.size());
   for (const double dash : stroke.dashes) hash.add(std::bit_cast<std::uint64_t>(dash));
   for (std::size_t i = 0; i < line_count_; ++i) {

@@ -280,6 +280,7 @@ class LayerDrawing {
   std::uint32_t piece_number_ = 0;
   bool has_pieces_ = false;  // more than one
   double least_side_ = 1;    // of a small polygon as it is drawn, in pixels
+  double scale_ = 1;         // of lines and patterns
   View view_;
   bool has_stack_ = false;            // features overlap here
   std::deque<ClassDrawing> classes_;  // parts point into them

@@ -233,9 +233,10 @@ TilePainter::Sketch TilePainter::sketch(const PaintJob& job, const View& view) {
 void TilePainter::release_memory() {
   drawings_.clear();
   drawing_count_ = 0;
-  tasks_ = {};
-  painted_ = {};
-  tolerances_ = {};
+  // {} would assign an empty list, which keeps the memory of a vector.
+  tasks_ = std::vector<MaskTask>();
+  painted_ = std::vector<PaintedLayer>();
+  tolerances_ = std::vector<double>();
   meetings_ = {};
   picture_ = {};
   tools_ = {};

@@ -138,5 +138,15 @@ TEST(PartUnion, IsWhatEachPartCoversOfItself) {
   }
 }
 
+TEST(PartUnion, PartThatCoversOnlyALaterRingOfAnotherIsNoHole) {
+  const United u({"500 0, 510 0, 510 10, 500 10; 40 40, 60 40, 60 60, 40 60", kSquare});
+  EXPECT_TRUE(u.found.did_overlap);
+  EXPECT_EQ(u.area(), 10'000 + 100);
+  // Two rings within each other, the hole of the inner one first.
+  const char* outer = "-100 -100, 100 -100, 100 100, -100 100; -50 -50, 50 -50, 50 50, -50 50";
+  const char* inner = "-40 -40, 40 -40, 40 40, -40 40; -70 -70, 70 -70, 70 70, -70 70";
+  EXPECT_EQ(United({outer, inner}).area(), 200 * 200 - 80 * 80);
+}
+
 }  // namespace
 }  // namespace trapeze

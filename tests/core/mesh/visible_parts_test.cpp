@@ -5,6 +5,7 @@
 #include <map>
 #include <random>
 
+#include "core/grid/cancellation.h"
 #include "tests/core/shapes/layers.h"
 #include "tests/core/shapes/ring_text.h"
 
@@ -180,6 +181,36 @@ TEST(VisiblePartsTest, PartsAndWhatCutThemAddUp) {
     // The area visible through the other polygon plus the area visible without it is the whole.
     EXPECT_NEAR(area_of(halved), whole, 1e-6 * whole) << seed;
     EXPECT_LT(area_of(cut), whole) << seed;
+  }
+}
+
+TEST(VisiblePartsTest, NothingIsLeftOfWhatWasCancelled) {
+  const auto layer =
+      layer_of({rings_from_text("0 0, 100 0, 100 100, 0 100"),
+                rings_from_text("20 10, 80 10, 80 30, 20 30; 20 40, 80 40, 80 60, 20 60"),
+                rings_from_text("40 5, 60 5, 60 95, 40 95")});
+  const auto by_row = trapezoids_by_row(*layer);
+  std::vector<Sheet> sheets(3);
+  for (const std::size_t row : {1, 2}) sheets[row].assign(layer->mesh(), by_row[row]);
+  const auto cut = [&](VisibleParts& parts, CancellationCheck check) {
+    parts.begin(layer->mesh());
+    for (const std::uint32_t trapezoid : by_row[0]) {
+      parts.add(trapezoid);
+      for (const std::size_t row : {1, 2}) parts.cover(sheets[row], 0, check);
+    }
+    return std::vector<TrapezoidPart>(parts.parts().begin(), parts.parts().end());
+  };
+  Cancellation cancelled;
+  cancelled.cancel();
+  VisibleParts fresh;
+  const auto expected = cut(fresh, CancellationCheck(nullptr, 1));
+  for (unsigned steps = 1; steps < 30; ++steps) {
+    VisibleParts parts;
+    try {
+      cut(parts, CancellationCheck(&cancelled, steps));
+    } catch (const Cancelled&) {
+    }
+    EXPECT_EQ(cut(parts, CancellationCheck(nullptr, 1)), expected) << "after " << steps << " steps";
   }
 }
 

@@ -130,6 +130,18 @@ TEST_P(FingerprintTest, WhatIsNotSeenDoesNotMatter) {
   EXPECT_FALSE(same(tile, tile + "?quality=exact"));
 }
 
+// Pictures of the same pixels, with lines and patterns of another width.
+TEST_P(FingerprintTest, TheScaleOfLinesAndPatternsMatters) {
+  testing::EditedLand land(5);
+  const auto dataset = land.load();
+  for (const char* style : {"?stroke=black&stroke-width=3", "?pattern=hatch&pattern-color=black"}) {
+    TilePlan plan = plan_of(dataset, std::string("land/3/4/3@2x.png") + style);
+    const std::string of_tile = painter_->identify({&plan});
+    plan.scale = 1;
+    EXPECT_NE(painter_->identify({&plan}), of_tile) << style;
+  }
+}
+
 TEST_P(FingerprintTest, EmptyTilesAndFullOnesAreAllAlike) {
   testing::EditedLand land(5);
   const auto dataset = land.load();
