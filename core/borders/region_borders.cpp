@@ -190,13 +190,13 @@ void RegionBorders::note_lost_loop(const LostLoop& loop) {
 }
 
 double RegionBorders::weight(RegionId region) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
+  constexpr double kStays = std::numeric_limits<double>::infinity();
   const bool may_go = plan_ != nullptr || may_have_junction_[region] != 0;
-  if (find(region) != region || region == unbounded_ || !may_go) return kNever;
+  if (find(region) != region || region == unbounded_ || !may_go) return kStays;
   const FaceId face = faces_[region];
   if (plan_ != nullptr && plan_->is_piece(face)) return plan_->due_of(face);
   collect_arcs(region);
-  if (!has_junction_) return kNever;
+  if (!has_junction_) return kStays;
   const double diagonal = std::hypot(static_cast<double>(box_.max_x) - box_.min_x,
                                      static_cast<double>(box_.max_y) - box_.min_y);
   const double weight = kWeightOfMeanWidth * moments_[region].area / diagonal;

@@ -389,7 +389,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
       ->type_name("I/N");
   prepare
       ->add_option("--join", arguments.join, "Only make an overview of these parts, for low zooms")
-      ->type_name("PART ...");
+      ->type_name("PART");
   prepare
       ->add_option("--crs", arguments.crs,
                    "Additional reference systems besides EPSG:3857, such as EPSG:2056; each gets "
@@ -561,7 +561,7 @@ void add_seed(CLI::App& app, trapeze::SeedArguments& arguments) {
                    "Seed part I of N parts of about equal cost; OUT is then an input for --join")
       ->type_name("I/N");
   seed->add_option("--join", arguments.join, "Only join these parts into the archive")
-      ->type_name("PART ...");
+      ->type_name("PART");
   seed->add_option(
           "--jobs", arguments.jobs,
           fmt::format(

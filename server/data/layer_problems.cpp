@@ -1,7 +1,5 @@
 #include "server/data/layer_problems.h"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <exception>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "core/io/prepared/prepared_parts.h"
 #include "core/io/source/change_feed.h"
 #include "server/data/dataset.h"
+#include "server/data/fast_topology.h"
 
 namespace trapeze {
 namespace {
@@ -54,13 +53,6 @@ std::string find_live_problem(const LayerConfig& layer) {
 }
 
 }  // namespace
-
-std::string find_topology_problem(const LayerConfig& layer) {
-  if (!is_pattern_of_files(layer.file_to_open()) || !layer.has_fast_topology()) return {};
-  return fmt::format(
-      "{}: a layer in parts is not served with topology=fast, for which it would be built again",
-      layer.file_to_open());
-}
 
 std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer) {
   std::vector<LayerProblem> problems;

@@ -22,7 +22,4 @@ struct LayerProblem {
 /// many skipped features. Reports problems instead of throwing. Thread-safety: any thread.
 std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer);
 
-/// A message if a layer in parts would have to be built for topology=fast; empty if not.
-std::string find_topology_problem(const LayerConfig& layer);
-
 }  // namespace trapeze

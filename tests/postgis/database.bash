@@ -117,7 +117,7 @@ until_true() {
   fail "$what"
 }
 is_ready() { curl --silent --fail --output /dev/null "$url/ready"; }
-port_of_server() { port_told=$(sed -n 's/.*listening on 127.0.0.1 port \([0-9]*\).*/\1/p' "$work/trapeze.log" | head -1); [[ -n $port_told ]]; }
+port_of_server() { port_told=$(sed -n 's/.*listening on 127.0.0.1 port \([0-9]*\).*/\1/p' "$work/trapeze.log" 2>/dev/null | head -1); [[ -n $port_told ]]; }
 
 # Waits for the server that logs to $work/trapeze.log, and sets $url to its address.
 wait_for_server() {

@@ -312,7 +312,9 @@ void FeatureSource::assign_failure_ahead(SourceFeature& next) {
   if (!next.failure.empty()) failure_ahead_ = next.failure;
   const bool has_geometry =
       next.layer != nullptr && next.feature->GetGeomFieldRef(next.layer->geometry_field) != nullptr;
-  next.failure = has_geometry ? std::string() : failure_ahead_;
+  next.failure = has_geometry || failure_ahead_.empty()
+                     ? std::string()
+                     : "has no geometry, or one that cannot be read: " + failure_ahead_;
 }
 
 /// The next wanted feature. Features that were passed over count as read.

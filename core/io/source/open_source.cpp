@@ -204,7 +204,7 @@ GDALDatasetUniquePtr open_source(const std::string& path, std::string* warning) 
     fail(path, "cannot be opened: " + messages.text());
   }
   if (dataset == nullptr) explain_refusal(path, std::string(messages.text()));
-  if (warning != nullptr) *warning = messages.text();
+  if (warning != nullptr && !messages.has_failure()) *warning = messages.text();
   if (dataset->GetLayerCount() > 0) return dataset;
   if (!messages.has_failure()) fail(path, "has no layer of vector data");
   fail(path, std::string("is broken (") + dataset->GetDriverName() + "): " + messages.text());
