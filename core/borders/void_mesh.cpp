@@ -296,6 +296,7 @@ bool VoidMesh::divide_walls_beside(const std::vector<HalfEdge>& sides) {
     VertexId to;
   };
   std::vector<Bridge> bridges;
+  bridges.reserve(sides.size());
   for (const HalfEdge h : sides) bridges.push_back({h, twins_[h], corners_[h], corners_[next(h)]});
   const auto is_within = [this](std::uint32_t triangle) { return !is_beyond(triangle); };
   bool has_divided = false;

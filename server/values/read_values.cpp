@@ -103,6 +103,7 @@ Problem no_such_column(std::string_view parameter, const std::string& name,
                        const std::vector<std::string>& names) {
   constexpr std::size_t kMostNamed = 20;
   std::vector<std::string> known;
+  known.reserve(names.size());
   for (const std::string& each : names) known.push_back(each.substr(0, kMaxNameBytes));
   const auto named = std::min(known.size(), kMostNamed);
   const std::string list = fmt::format(

@@ -61,6 +61,7 @@ std::vector<std::string> files_of(const std::string& path) {
   const GDALDatasetUniquePtr dataset = open_source(path);
   const CPLStringList list(dataset->GetFileList());
   std::vector<std::string> files;
+  files.reserve(static_cast<std::size_t>(list.Count()));
   for (int i = 0; i < list.Count(); ++i) files.emplace_back(list[i]);
   if (std::string_view(dataset->GetDriverName()) == "ESRI Shapefile") {
     for (const char* ending : kBesideShapes) {
@@ -76,6 +77,7 @@ std::vector<std::string> files_of(const std::string& path) {
 std::string addition_since(const SourceStamp& stamp, const std::string& stem,
                            const std::filesystem::path& now) {
   std::vector<std::string> names;
+  names.reserve(stamp.files.size());
   for (const FileStamp& file : stamp.files) names.push_back(file.name);
   if (!is_named(stem + ".shp", names)) return {};
   for (const char* ending : kBesideShapes) {
@@ -128,7 +130,7 @@ std::string change_since(const SourceStamp& stamp, const std::string& path) {
     const bool has_stem = file.name.starts_with(stem + ".");
     const std::string name =
         has_stem ? now.stem().string() + file.name.substr(stem.size()) : file.name;
-    const std::string change = change_of_file(file, (folder_of(now.string()) / name).string());
+    std::string change = change_of_file(file, (folder_of(now.string()) / name).string());
     if (!change.empty()) return change;
   }
   return addition_since(stamp, stem, now);
