@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <iterator>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -695,16 +696,20 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   std::future<FeatureOverlaps> finding = std::async(launch, [&] {
     const MeshView mesh{0, arrays.vertices, arrays.edges, arrays.mesh.trapezoids};
     const GrowingMesh& all = arrays.mesh;
-    const auto find = [&](std::span<const std::uint32_t> kinds_of_rows) {
+    const auto find = [&](std::span<const std::uint32_t> kinds_of_rows,
+                          std::vector<FeatureOverlap> known) {
       return find_overlaps({mesh, std::span(all.lifespans).first(polygons),
                             std::span(all.feature_of).first(polygons), kinds_of_rows, boxes},
-                           arrays.known, threads);
+                           std::move(known), threads);
     };
-    FeatureOverlaps found = find(kinds);
-    if (found.is_complete || !are_known) return found;
+    if (!are_known) return find(kinds, std::move(arrays.known));
+    std::vector<FeatureOverlap> in_common;
+    std::ranges::copy_if(arrays.known, std::back_inserter(in_common),
+                         &FeatureOverlap::is_in_common);
+    FeatureOverlaps found = find(kinds, std::move(arrays.known));
+    if (found.is_complete) return found;
     // If nothing were taken over, they would not all be found, so the known ones are not kept.
-    std::erase_if(arrays.known, [](const FeatureOverlap& pair) { return !pair.is_in_common(); });
-    return find(arrays.graph_of);
+    return find(arrays.graph_of, std::move(in_common));
   });
   const Numbering number = order_edges_and_vertices(dust.motes.size(), arrays);
   order_milestones(arrays, *layer);

@@ -1,7 +1,6 @@
 #include "server/data/named_tables.h"
 
 #include <fmt/format.h>
-#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <fstream>

@@ -6,7 +6,6 @@
 #include "server/data/source_files.h"
 
 #include <fmt/format.h>
-#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>

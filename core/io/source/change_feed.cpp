@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -37,6 +38,7 @@ std::string with_names(std::string query) {
 
 struct ChangeFeed::Connection {
   GDALDatasetUniquePtr source;
+  std::optional<bool> has_number_apart;  // see ask(); once known, since another query finds it out
 };
 
 ChangeFeed::ChangeFeed(std::string path, std::string query)
@@ -51,7 +53,7 @@ ChangeFeed::ChangeFeed(ChangeFeed&&) noexcept = default;
 std::vector<std::int64_t> ChangeFeed::take() {
   try {
     if (connection_ == nullptr) {
-      connection_ = std::make_unique<Connection>(Connection{open_source(path_)});
+      connection_ = std::make_unique<Connection>(Connection{open_source(path_), {}});
     }
     return ask();
   } catch (...) {
@@ -76,8 +78,11 @@ std::vector<std::int64_t> ChangeFeed::ask() {
   // number if that is the key of the table of changes.
   OGRFeatureDefn& columns = *rows->GetLayerDefn();
   const bool has_key_apart = columns.GetFieldCount() == 1 && *rows->GetFIDColumn() != '\0';
-  const bool has_number_apart =
-      has_key_apart && std::string_view(answer(with_names(query))->GetFIDColumn()) == "number";
+  if (has_key_apart && !connection_->has_number_apart) {
+    const auto named = answer(with_names(query));
+    connection_->has_number_apart = std::string_view(named->GetFIDColumn()) == "number";
+  }
+  const bool has_number_apart = has_key_apart && *connection_->has_number_apart;
   const auto is_integer = [&columns](int field) {
     const OGRFieldType type = columns.GetFieldDefn(field)->GetType();
     return type == OFTInteger || type == OFTInteger64;
