@@ -1,6 +1,8 @@
-// Bounding boxes of rings, and boxes within boxes.
+// Bounding boxes and areas of rings, and boxes within boxes.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <span>
 
 #include "core/grid/grid.h"
@@ -12,6 +14,19 @@ inline Box box_of(std::span<const Point> ring) {
   Box box;
   for (const Point p : ring) box.include(p);
   return box;
+}
+
+/// The area within a ring that does not cross itself and has at least one point, in square cells.
+inline double area_of_ring(std::span<const Point> ring) {
+  double twice = 0;
+  const Point origin = ring.front();
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Point a = ring[i];
+    const Point b = ring[i + 1 == ring.size() ? 0 : i + 1];
+    twice += (static_cast<double>(a.x) - origin.x) * (static_cast<double>(b.y) - origin.y) -
+             (static_cast<double>(b.x) - origin.x) * (static_cast<double>(a.y) - origin.y);
+  }
+  return std::abs(twice) / 2;
 }
 
 /// Whether no part of the inner box lies outside the outer one.

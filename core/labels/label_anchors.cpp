@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -10,6 +11,8 @@
 #include "core/grid/digest.h"
 #include "core/grid/for_each_in_parallel.h"
 #include "core/grid/ring_box.h"
+#include "core/labels/covering_features.h"
+#include "core/labels/sides_by_height.h"
 #include "core/layer/built_units.h"
 
 namespace trapeze {
@@ -21,81 +24,39 @@ constexpr int kMostProbes = 2'000;
 // A part of which nothing visible is found in so many probes counts as covered.
 constexpr int kMostProbesOfNothing = 500;
 
-double area_of_ring(std::span<const Point> ring) {
-  double twice = 0;
-  const Point origin = ring.front();
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Point a = ring[i];
-    const Point b = ring[i + 1 == ring.size() ? 0 : i + 1];
-    twice += (static_cast<double>(a.x) - origin.x) * (static_cast<double>(b.y) - origin.y) -
-             (static_cast<double>(b.x) - origin.x) * (static_cast<double>(a.y) - origin.y);
-  }
-  return std::abs(twice) / 2;
-}
-
-/// How many rows of equal height to sort sides into. `heights` is the sum of their heights, each at
-/// most `height`. Where most sides are high, more rows would need much memory and save nothing.
-std::size_t row_count(std::size_t sides, double heights, double height) {
-  constexpr std::size_t kSidesPerRow = 4;
-  constexpr std::size_t kMostRows = 4096;
-  constexpr double kRowsPerSide = 16;  // on average, at most
-  const std::size_t rows = std::clamp<std::size_t>(sides / kSidesPerRow, 1, kMostRows);
-  if (heights <= 0) return rows;
-  const double most = kRowsPerSide * static_cast<double>(sides) * height / heights;
-  return static_cast<std::size_t>(std::clamp(most, 1.0, static_cast<double>(rows)));
-}
-
-/// Sides of a ring, indexed by height.
+/// A ring whose sides can be found by height.
 class RingIndex {
  public:
-  explicit RingIndex(std::span<const Point> ring) : ring_(ring), box_(box_of(ring)) {
-    if (ring.size() < kLeastSides) return;
-    double sum = 0;
-    for (std::size_t i = 0; i < ring.size(); ++i) sum += heights(i).second - heights(i).first;
-    rows_.resize(row_count(ring.size(), sum, static_cast<double>(box_.max_y) - box_.min_y));
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const auto [low, high] = heights(i);
-      for (std::size_t row = row_at(low); row <= row_at(high); ++row) {
-        rows_[row].push_back(static_cast<std::uint32_t>(i));
-      }
-    }
+  explicit RingIndex(std::span<const Point> ring) : ring_(ring) {
+    const Box box = box_of(ring);
+    top_ = box.min_y;
+    bottom_ = box.max_y;
+    by_height_.sort(ring.size(), top_, bottom_, [&](std::uint32_t i) {
+      return SidesByHeight::between(ring_[i], ring_[next(i)]);
+    });
   }
 
   /// Whether a ray from the point to the west crosses the ring an odd number of times.
   bool holds(double x, double y) const {
+    if (y < top_ || y > bottom_) return false;
     bool is_inside = false;
-    const auto cross = [&](std::size_t i) {
+    for (const std::uint32_t i : by_height_.at(y)) {
       const Point a = ring_[i];
       const Point b = ring_[next(i)];
-      if ((a.y > y) == (b.y > y)) return;
+      if ((a.y > y) == (b.y > y)) continue;
       const double share = (y - a.y) / (static_cast<double>(b.y) - a.y);
       if (a.x + share * (static_cast<double>(b.x) - a.x) < x) is_inside = !is_inside;
-    };
-    if (rows_.empty()) {
-      for (std::size_t i = 0; i < ring_.size(); ++i) cross(i);
-    } else if (y >= box_.min_y && y <= box_.max_y) {
-      for (const std::uint32_t i : rows_[row_at(y)]) cross(i);
     }
     return is_inside;
   }
 
  private:
-  static constexpr std::size_t kLeastSides = 64;
-
   std::size_t next(std::size_t i) const { return i + 1 == ring_.size() ? 0 : i + 1; }
-  std::pair<double, double> heights(std::size_t i) const {
-    const std::int32_t a = ring_[i].y;
-    const std::int32_t b = ring_[next(i)].y;
-    return {std::min(a, b), std::max(a, b)};
-  }
-  std::size_t row_at(double y) const {
-    const double height = static_cast<double>(box_.max_y) - box_.min_y + 1;
-    return static_cast<std::size_t>((y - box_.min_y) / height * static_cast<double>(rows_.size()));
-  }
 
   std::span<const Point> ring_;
-  Box box_;
-  std::vector<std::vector<std::uint32_t>> rows_;  // empty if there are few sides
+  double top_ = 0;
+  double bottom_ = 0;
+  SidesByHeight by_height_;
 };
 
 /// Rings do not cross but may touch: the middle of a side decides, where a shared vertex would not.
@@ -161,12 +122,35 @@ std::vector<Part> parts_of(const Rings& rings) {
   return parts;
 }
 
+/// The area in which the deepest point of a part is searched: its bounding box, or a little more.
+struct SearchArea {
+  double left = 0;  // drawn narrower, as the sides of a Boundary
+  double top = 0;
+  double side = 0;  // of the squares into which it is divided at first
+  int columns = 0;
+  int rows = 0;
+
+  /// Elongated boxes are divided into as many squares as fit.
+  explicit SearchArea(const Box& box)
+      : left(box.min_x / LabelAnchors::kSqueeze), top(static_cast<double>(box.min_y)) {
+    const double width = box.max_x / LabelAnchors::kSqueeze - left;
+    const double height = box.max_y - top;
+    side = std::max({std::min(width, height), std::max(width, height) / 32, 1.0});
+    columns = static_cast<int>(std::ceil(width / side));
+    rows = static_cast<int>(std::ceil(height / side));
+  }
+
+  double right() const { return left + columns * side; }
+  double bottom() const { return top + rows * side; }
+};
+
 /// Sides of boundaries, drawn narrower. Small rings count less: a label may cover a pond, and need
 /// not keep the same distance from it as from the border of its country.
 class Boundary {
  public:
   void clear() {
     sides_.clear();
+    beside_.clear();
     is_small_.clear();
   }
   /// Starts a polygon. The inside is within the first polygon, by even-odd, and within none of the
@@ -176,40 +160,40 @@ class Boundary {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Point a = ring[i];
       const Point b = ring[i + 1 == ring.size() ? 0 : i + 1];
-      if (a == b) continue;
-      Side side{a.x / LabelAnchors::kSqueeze,
-                static_cast<double>(a.y),
-                (static_cast<double>(b.x) - a.x) / LabelAnchors::kSqueeze,
-                static_cast<double>(b.y) - a.y,
-                0,
-                static_cast<std::uint32_t>(is_small_.size() - 1)};
-      side.by_square = 1 / (side.dx * side.dx + side.dy * side.dy);
-      sides_.push_back(side);
+      if (a != b) sides_.push_back(side_between(a, b));
     }
   }
-  /// Must be called once all rings have been added.
-  void sort(const Box& box) {
-    top_ = box.min_y;
-    const double height = static_cast<double>(box.max_y) - box.min_y;
-    double heights = 0;
-    for (const Side& side : sides_) heights += std::min(std::abs(side.dy), height);
-    const std::size_t rows = row_count(sides_.size(), heights, height);
-    row_height_ = std::max(height / static_cast<double>(rows), 1e-3);
-    rows_.resize(std::max(rows_.size(), rows));
-    row_count_ = rows;
-    for (std::size_t i = 0; i < rows; ++i) rows_[i].clear();
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
-      const Side& side = sides_[i];
-      const double low = std::min(side.y, side.y + side.dy);
-      const double high = std::max(side.y, side.y + side.dy);
-      if (high < top_ || low > box.max_y) continue;
-      for (std::size_t row = row_at(low); row <= row_at(high); ++row) {
-        rows_[row].push_back(static_cast<std::uint32_t>(i));
+  /// Adds the sides of a feature that matter within an area. Beyond the area, the border of the
+  /// part that is searched is nearer to its points than any side; those to the west only decide
+  /// what is inside.
+  void add(const CoveringFeature& feature, const SearchArea& area) {
+    const auto is_beyond = [](double low, double high, double p, double q) {
+      return std::max(p, q) < low || std::min(p, q) > high;
+    };
+    feature.visit_sides(area.top, area.bottom(), [&](Point a, Point b) {
+      if (a == b || is_beyond(area.top, area.bottom(), a.y, b.y)) return;
+      const Side side = side_between(a, b);
+      const double other_x = side.x + side.dx;
+      if (!is_beyond(area.left, area.right(), side.x, other_x)) {
+        sides_.push_back(side);
+      } else if (side.x < area.left) {
+        beside_.push_back(side);
       }
-    }
+    });
+  }
+  /// Must be called once everything has been added.
+  void sort(const SearchArea& area) {
+    size_ = sides_.size();
+    sides_.insert(sides_.end(), beside_.begin(), beside_.end());
+    by_height_.sort(sides_.size(), area.top, area.bottom(), [this](std::uint32_t i) {
+      const Side& side = sides_[i];
+      return SidesByHeight::Heights{std::min(side.y, side.y + side.dy),
+                                    std::max(side.y, side.y + side.dy)};
+    });
   }
 
-  std::size_t size() const { return sides_.size(); }
+  /// The number of sides that may be nearest to a place in the area.
+  std::size_t size() const { return size_; }
 
   /// The point of a side nearest to a place.
   struct Foot {
@@ -246,7 +230,7 @@ class Boundary {
   };
   Inside inside(double x, double y) {
     is_odd_.assign(is_small_.size(), 0);
-    for (const std::uint32_t i : rows_[row_at(y)]) {
+    for (const std::uint32_t i : by_height_.at(y)) {
       const Side& side = sides_[i];
       const double px = x - side.x;
       const double py = y - side.y;
@@ -271,19 +255,23 @@ class Boundary {
     std::uint32_t polygon;
   };
 
-  std::size_t row_at(double y) const {
-    const double row =
-        std::clamp((y - top_) / row_height_, 0.0, static_cast<double>(row_count_ - 1));
-    return static_cast<std::size_t>(row);
+  Side side_between(Point a, Point b) const {
+    Side side{a.x / LabelAnchors::kSqueeze,
+              static_cast<double>(a.y),
+              (static_cast<double>(b.x) - a.x) / LabelAnchors::kSqueeze,
+              static_cast<double>(b.y) - a.y,
+              0,
+              static_cast<std::uint32_t>(is_small_.size() - 1)};
+    side.by_square = 1 / (side.dx * side.dx + side.dy * side.dy);
+    return side;
   }
 
   std::vector<Side> sides_;
+  std::vector<Side> beside_;  // west of the area; added to the others when these are sorted
+  std::size_t size_ = 0;
   std::vector<std::uint8_t> is_small_;  // by polygon
-  double top_ = 0;
-  double row_height_ = 1;
-  std::size_t row_count_ = 0;
-  std::vector<std::vector<std::uint32_t>> rows_;  // by height: the sides that extend into each row
-  std::vector<std::uint8_t> is_odd_;              // by polygon
+  SidesByHeight by_height_;
+  std::vector<std::uint8_t> is_odd_;  // by polygon
 };
 
 /// A square in which the deepest point may lie.
@@ -403,12 +391,7 @@ class Prober {
 
 /// Finds the deepest point by subdividing squares in which it may lie. Its coordinates are not
 /// rounded yet.
-Square deepest(Boundary& boundary, const Box& box, Prober& prober) {
-  const double min_x = box.min_x / LabelAnchors::kSqueeze;
-  const double width = box.max_x / LabelAnchors::kSqueeze - min_x;
-  const double height = static_cast<double>(box.max_y) - box.min_y;
-  // Elongated boxes are divided into as many squares as fit.
-  const double side = std::max({std::min(width, height), std::max(width, height) / 32, 1.0});
+Square deepest(Boundary& boundary, const SearchArea& area, Prober& prober) {
   prober.begin(boundary);
   const std::size_t all = prober.side_count();
   std::vector<Square> open;  // a heap
@@ -422,12 +405,10 @@ Square deepest(Boundary& boundary, const Box& box, Prober& prober) {
     open.push_back(square);
     std::ranges::push_heap(open, is_worse);
   };
-  const auto columns = static_cast<int>(std::ceil(width / side));
-  const auto rows = static_cast<int>(std::ceil(height / side));
-  for (int column = 0; column < columns; ++column) {
-    for (int row = 0; row < rows; ++row) {
-      take(prober.look(min_x + (column + 0.5) * side, box.min_y + (row + 0.5) * side, side / 2, 0,
-                       all));
+  for (int column = 0; column < area.columns; ++column) {
+    for (int row = 0; row < area.rows; ++row) {
+      take(prober.look(area.left + (column + 0.5) * area.side, area.top + (row + 0.5) * area.side,
+                       area.side / 2, 0, all));
     }
   }
   const auto has_been_searched = [&] {
@@ -453,7 +434,7 @@ Square deepest(Boundary& boundary, const Box& box, Prober& prober) {
 class Finder {
  public:
   /// Takes a feature of a layer and those over it. Returns false if nothing of it exists.
-  bool take(const Layer& layer, std::uint32_t row) {
+  bool take(const Layer& layer, std::uint32_t row, CoveringFeatures& covering) {
     rings_.clear();
     above_.clear();
     if (layer.is_removed(row)) return false;
@@ -461,27 +442,29 @@ class Finder {
     if (rings_.empty()) return false;
     for (const FeatureOverlap& overlap : layer.overlaps().of(row)) {
       if (overlap.other < row || layer.is_removed(overlap.other)) continue;
-      layer.append_outline(overlap.other, add_above());
+      above_.push_back(covering.at(overlap.other));
     }
     return true;
   }
   void take(const Rings& rings, std::span<const Rings> above) {
     rings_ = rings;
     above_.clear();
-    for (const Rings& other : above) add_above() = other;
+    for (const Rings& other : above) {
+      above_.push_back(std::make_shared<const CoveringFeature>(other));
+    }
   }
 
   /// Digest of everything that the anchors of the feature depend on.
   Digest digest() const {
     std::vector<Digest> digests{digest_of(rings_)};
-    for (const Above& above : above_) digests.push_back(digest_of(above.rings));
+    for (const auto& above : above_) digests.push_back(above->digest());
     return digest_of(digests);
   }
 
   void find(std::uint32_t row, LabelParts parts, std::vector<LabelAnchor>& anchors) {
-    for (Above& above : above_) above.measure();
     for (const Part& part : parts_of(rings_)) {
       const Box box = box_of(rings_[part.outer]);
+      const SearchArea area(box);
       const double small = part.area * LabelAnchors::kSmallShare;
       boundary_.clear();
       boundary_.begin_polygon(false);
@@ -494,15 +477,13 @@ class Finder {
       add_holes(false);
       boundary_.begin_polygon(true);
       add_holes(true);
-      for (const Above& above : above_) {
-        if (!above.box.intersects(box)) continue;
-        boundary_.begin_polygon(above.area < small);
-        for (std::size_t i = 0; i < above.boxes.size(); ++i) {
-          if (above.boxes[i].intersects(box)) boundary_.add(above.rings[i]);
-        }
+      for (const auto& above : above_) {
+        if (!above->box().intersects(box)) continue;
+        boundary_.begin_polygon(above->area() < small);
+        boundary_.add(*above, area);
       }
-      boundary_.sort(box);
-      const Square found = deepest(boundary_, box, prober_);
+      boundary_.sort(area);
+      const Square found = deepest(boundary_, area, prober_);
       // Rounded to whole cells.
       const double x = std::round(found.x * LabelAnchors::kSqueeze);
       const double y = std::round(found.y);
@@ -519,27 +500,10 @@ class Finder {
   }
 
  private:
-  struct Above {
-    Rings rings;
-    std::vector<Box> boxes = {};  // of its rings
-    Box box = {};                 // around all
-    double area = 0;              // of the largest one
-
-    void measure() {
-      for (std::size_t i = 0; i < rings.size(); ++i) {
-        boxes.push_back(box_of(rings[i]));
-        box.include(boxes.back());
-        area = std::max(area, area_of_ring(rings[i]));
-      }
-    }
-  };
-
-  Rings& add_above() { return above_.emplace_back().rings; }
-
   Rings rings_;
   Boundary boundary_;
   Prober prober_;
-  std::vector<Above> above_;
+  std::vector<std::shared_ptr<const CoveringFeature>> above_;
 };
 
 /// Calls visit(row, finder, results) for all existing features, after the finder has taken the
@@ -548,11 +512,12 @@ template <typename Result, typename Visit>
 std::vector<Result> for_each_feature(const Layer& layer, unsigned threads, const Visit& visit) {
   const std::size_t rows = layer.features().size();
   std::vector<std::vector<Result>> results((rows + kRowsAtOnce - 1) / kRowsAtOnce);
+  CoveringFeatures covering(layer);
   for_each_in_parallel(results.size(), threads, [&](std::size_t i) {
     Finder finder;
     const std::size_t end = std::min((i + 1) * kRowsAtOnce, rows);
     for (auto row = static_cast<std::uint32_t>(i * kRowsAtOnce); row < end; ++row) {
-      if (finder.take(layer, row)) visit(row, finder, results[i]);
+      if (finder.take(layer, row, covering)) visit(row, finder, results[i]);
     }
   });
   std::size_t count = 0;

@@ -193,6 +193,55 @@ TEST(LabelAnchorsTest, AStripThatIsSeenIsFound) {
   }
 }
 
+TEST(LabelAnchorsTest, UnderALargeFeatureOnlyWhatIsSeenCounts) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<std::int32_t> place(-40'000, 40'000);
+  int covered = 0;
+  int partly = 0;
+  for (int i = 0; i < 400; ++i) {
+    // A feature of many spikes, with a hole, over a small one somewhere around its boundary.
+    Rings large = rings_of({star(random, {0, 0}, 300, 15'000, 45'000)});
+    large.add(star(random, {0, 0}, 100, 4'000, 12'000));
+    const Rings small = rings_of({star(random, {place(random), place(random)}, 12, 900, 3'000)});
+    const std::vector<Rings> above = {large};
+    const auto is_seen = [&](double x, double y) {
+      return is_inside(small, x, y) && !is_inside(large, x, y);
+    };
+    const auto anchors = anchors_of_feature(0, small, above);
+    Box bounds;
+    for (const Point p : small.points) bounds.include(p);
+    // The greatest circle, drawn wider, of which everything is seen, by sampling.
+    double deepest = 0;
+    for (double y = bounds.min_y; y < bounds.max_y; y += 400) {
+      for (double x = bounds.min_x; x < bounds.max_x; x += 400) {
+        double depth = 0;
+        const auto is_free = [&](double radius) {
+          for (int k = 0; k < 24; ++k) {
+            const double angle = k * std::numbers::pi / 12;
+            const double to_x = x + radius * LabelAnchors::kSqueeze * std::cos(angle);
+            if (!is_seen(to_x, y + radius * std::sin(angle))) return false;
+          }
+          return true;
+        };
+        while (is_seen(x, y) && is_free(depth + 50)) depth += 50;
+        deepest = std::max(deepest, depth);
+      }
+    }
+    if (anchors.empty()) {
+      EXPECT_LT(deepest, 100) << i;
+      ++covered;
+      continue;
+    }
+    ASSERT_EQ(anchors.size(), 1u);
+    EXPECT_TRUE(is_seen(anchors[0].place.x, anchors[0].place.y)) << i;
+    partly += anchors[0].depth < 300 ? 1 : 0;
+    // Spikes may reach between the directions of the sampled circle, so that it may be too large.
+    EXPECT_GE(anchors[0].depth, deepest * 0.6 - 100) << i;
+  }
+  EXPECT_GT(covered, 20);
+  EXPECT_GT(partly, 20);
+}
+
 TEST(LabelAnchorsTest, OfWhatIsAsItWasIsTakenOver) {
   const Rings house = rings_of({box(0, 0, 3'000, 1'000)});
   const Rings field = rings_of({box(10'000, 0, 40'000, 9'000)});
