@@ -9,6 +9,7 @@ namespace {
 constexpr std::string_view kMask = "***";
 constexpr std::string_view kSpaces = " \t\n\v\f\r";
 constexpr std::string_view kEndsOfValue = " \t\n\v\f\r&";
+constexpr std::string_view kEndsOfQueryValue = "&#";
 constexpr std::string_view kEndOfOdbc = ";";
 
 std::string lower_case(std::string_view text) {
@@ -74,11 +75,35 @@ std::string without_user_passwords(std::string_view text) {
   return masked.append(text.substr(done));
 }
 
+/// For keys in the query of a URL, whatever comes before these words in their names, as in
+/// `access_token` and `X-Amz-Signature`.
+std::string without_keys_in_query(const std::string& text) {
+  const std::size_t query = text.find('?');
+  if (query == std::string::npos) return text;
+  std::string masked = text.substr(query);
+  for (const std::string_view word : {"token", "key", "sig", "signature", "secret"}) {
+    masked = without_assigned_passwords(masked, word, kEndsOfQueryValue);
+  }
+  return text.substr(0, query) + masked;
+}
+
+/// For `ODBC:user/password@source,table` and the same of Oracle.
+std::string without_login_password(const std::string& text) {
+  const std::string lower = lower_case(text);
+  if (!lower.starts_with("odbc:") && !lower.starts_with("oci:")) return text;
+  const std::size_t slash = text.find('/');
+  const std::size_t host = text.substr(0, text.find(',')).rfind('@');
+  if (slash == std::string::npos || host == std::string::npos || host < slash) return text;
+  return text.substr(0, slash + 1) + std::string(kMask) + text.substr(host);
+}
+
 }  // namespace
 
 std::string name_of_source(const std::string& path) {
-  const std::string masked = without_assigned_passwords(path, "password", kEndsOfValue);
-  return without_user_passwords(without_assigned_passwords(masked, "pwd", kEndOfOdbc));
+  const std::string login = without_login_password(path);
+  const std::string masked = without_assigned_passwords(login, "password", kEndsOfValue);
+  return without_keys_in_query(
+      without_user_passwords(without_assigned_passwords(masked, "pwd", kEndOfOdbc)));
 }
 
 }  // namespace trapeze

@@ -251,8 +251,10 @@ TEST_F(SourceSelectionTest, OfAPreparedLayerTakesTheSourceOnly) {
 }
 
 TEST(NameOfSourceTest, HidesPasswordsAndNothingElse) {
-  for (const char* plain : {"/maps/a.gpkg", "/vsizip/a.zip/b.shp", "PG:host=db user=me dbname=x",
-                            "postgresql://me@db/maps", "/vsicurl/https://example.org/a.fgb"}) {
+  for (const char* plain :
+       {"/maps/a.gpkg", "/vsizip/a.zip/b.shp", "PG:host=db user=me dbname=x",
+        "postgresql://me@db/maps", "/vsicurl/https://example.org/a.fgb", "ODBC:me@maps,roads",
+        "OCI:", "/maps/key=1/a.fgb", "/vsicurl/https://a.org/b?tokens=2&x=1"}) {
     EXPECT_EQ(name_of_source(plain), plain);
   }
   EXPECT_EQ(name_of_source("PG:host=db password=secret user=me"),
@@ -268,6 +270,17 @@ TEST(NameOfSourceTest, HidesPasswordsAndNothingElse) {
   EXPECT_EQ(name_of_source("MSSQL:uid=me;pwd={a;b};database=x"), "MSSQL:uid=me;pwd=***;database=x");
   EXPECT_EQ(name_of_source("/vsicurl/https://me:secret@example.org/a.fgb"),
             "/vsicurl/https://me:***@example.org/a.fgb");
+  EXPECT_EQ(name_of_source("ODBC:me/sec@ret@maps,a@b"), "ODBC:me/***@maps,a@b");
+  EXPECT_EQ(name_of_source("OCI:me/secret@db:land"), "OCI:me/***@db:land");
+}
+
+TEST(NameOfSourceTest, HidesKeysInTheQueryOfAUrl) {
+  EXPECT_EQ(name_of_source("WFS:https://a.org/wfs?access_token=se/cret&service=WFS"),
+            "WFS:https://a.org/wfs?access_token=***&service=WFS");
+  EXPECT_EQ(name_of_source("/vsicurl/https://a.org/b.fgb?sv=1&sig=a%2Fb&se=2"),
+            "/vsicurl/https://a.org/b.fgb?sv=1&sig=***&se=2");
+  EXPECT_EQ(name_of_source("/vsicurl/https://a.org/b?X-Amz-Signature=12&API_KEY=3#part"),
+            "/vsicurl/https://a.org/b?X-Amz-Signature=***&API_KEY=***#part");
 }
 
 TEST(NameOfSourceTest, HidesAllOfAPasswordOfAnyCharacters) {
