@@ -16,6 +16,12 @@ inline Box box_of(std::span<const Point> ring) {
   return box;
 }
 
+/// In square cells; not for an empty box.
+constexpr double area_of(const Box& box) {
+  return (static_cast<double>(box.max_x) - box.min_x) *
+         (static_cast<double>(box.max_y) - box.min_y);
+}
+
 /// The area within a ring that does not cross itself and has at least one point, in square cells.
 inline double area_of_ring(std::span<const Point> ring) {
   double twice = 0;

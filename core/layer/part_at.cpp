@@ -47,11 +47,6 @@ double distance_to(std::span<const Point> ring, Point point) {
   return nearest;
 }
 
-double area_of(const Box& box) {
-  return (static_cast<double>(box.max_x) - box.min_x) *
-         (static_cast<double>(box.max_y) - box.min_y);
-}
-
 /// The boxes of the rings that contain the point, the innermost first: the rings are nested.
 std::vector<Box> boxes_around(const Rings& rings, Point point) {
   std::vector<Box> boxes;

@@ -55,6 +55,36 @@ std::pair<double, double> heights_within(const Box& box, Point upper, Point lowe
   return {std::max(first, std::min(at_west, at_east)), std::min(last, std::max(at_west, at_east))};
 }
 
+/// The top or the bottom of a visible part.
+struct LevelSide {
+  std::int32_t y;
+  std::int32_t begin;
+  std::int32_t end;
+  std::int32_t reach;  // the greatest end of the sides of this height up to this one
+  float share;
+};
+
+/// The tops and bottoms at these heights, which are in ascending order; sorted by height, then by
+/// begin.
+std::vector<LevelSide> level_sides(const MeshView& mesh, std::span<const TrapezoidPart> parts,
+                                   std::span<const std::int32_t> heights) {
+  std::vector<LevelSide> sides;
+  if (heights.empty()) return sides;
+  for (const TrapezoidPart& part : parts) {
+    for (const std::int32_t y : {part.top, part.bottom}) {
+      if (!std::ranges::binary_search(heights, y)) continue;
+      const std::int32_t begin = rounded(EdgeLine(mesh, part.left).x_at(y));
+      const std::int32_t end = rounded(EdgeLine(mesh, part.right).x_at(y));
+      if (begin < end) sides.push_back({y, begin, end, end, part.share});
+    }
+  }
+  std::ranges::sort(sides, {}, [](const LevelSide& s) { return std::tuple(s.y, s.begin, s.end); });
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (sides[i].y == sides[i - 1].y) sides[i].reach = std::max(sides[i].end, sides[i - 1].reach);
+  }
+  return sides;
+}
+
 }  // namespace
 
 void append_seen_sides(const MeshView& mesh, std::span<const std::uint32_t> own,
@@ -83,25 +113,39 @@ void append_seen_sides(const MeshView& mesh, std::span<const std::uint32_t> own,
   }
 }
 
-void append_seen_level_edge(const MeshView& mesh, std::uint32_t edge, const VisibleInBox& visible,
-                            std::vector<SeenEdge>& seen) {
+void append_seen_level_edges(const MeshView& mesh, std::span<const std::uint32_t> edges,
+                             const VisibleInBox& visible, std::vector<SeenEdge>& seen) {
   const Box& box = visible.box;
-  const Point west = mesh.vertices[mesh.edges[edge].upper];
-  const Point east = mesh.vertices[mesh.edges[edge].lower];
-  if (west.y < box.min_y || west.y > box.max_y) return;
+  const auto west_of = [&](std::uint32_t edge) { return mesh.vertices[mesh.edges[edge].upper]; };
+  const auto east_of = [&](std::uint32_t edge) { return mesh.vertices[mesh.edges[edge].lower]; };
+  std::vector<std::int32_t> heights;
+  for (const std::uint32_t edge : edges) {
+    const std::int32_t y = west_of(edge).y;
+    if (y >= box.min_y && y <= box.max_y) heights.push_back(y);
+  }
+  std::ranges::sort(heights);
+  heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+  const std::vector<LevelSide> sides = level_sides(mesh, visible.parts, heights);
   std::vector<Piece> pieces;
-  for (const TrapezoidPart& part : visible.parts) {
-    if (part.top != west.y && part.bottom != west.y) continue;
-    const std::int32_t begin = std::max(rounded(EdgeLine(mesh, part.left).x_at(west.y)), west.x);
-    const std::int32_t end = std::min(rounded(EdgeLine(mesh, part.right).x_at(west.y)), east.x);
-    if (begin < end) pieces.push_back({edge, begin, end, part.share});
+  for (const std::uint32_t edge : edges) {
+    const Point west = west_of(edge);
+    const Point east = east_of(edge);
+    auto side =
+        std::ranges::lower_bound(sides, std::pair(west.y, west.x + 1), {},
+                                 [](const LevelSide& s) { return std::pair(s.y, s.reach); });
+    for (; side != sides.end() && side->y == west.y && side->begin < east.x; ++side) {
+      const std::int32_t begin = std::max(side->begin, west.x);
+      const std::int32_t end = std::min(side->end, east.x);
+      if (begin < end) pieces.push_back({edge, begin, end, side->share});
+    }
   }
   join(pieces);
   for (const Piece& piece : pieces) {
     if (piece.begin > box.max_x || piece.end < box.min_x) continue;
+    const Point west = west_of(piece.edge);
     const std::int32_t begin = piece.begin <= box.min_x ? west.x : piece.begin;
-    const std::int32_t end = piece.end >= box.max_x ? east.x : piece.end;
-    seen.push_back({edge, {begin, west.y}, {end, west.y}, piece.share});
+    const std::int32_t end = piece.end >= box.max_x ? east_of(piece.edge).x : piece.end;
+    seen.push_back({piece.edge, {begin, west.y}, {end, west.y}, piece.share});
   }
 }
 

@@ -34,8 +34,8 @@ struct VisibleInBox {
 void append_seen_sides(const MeshView& mesh, std::span<const std::uint32_t> own,
                        const VisibleInBox& visible, std::vector<SeenEdge>& seen);
 
-/// The same for the visible pieces of a horizontal edge of the feature.
-void append_seen_level_edge(const MeshView& mesh, std::uint32_t edge, const VisibleInBox& visible,
-                            std::vector<SeenEdge>& seen);
+/// The same for the visible pieces of horizontal edges of the feature.
+void append_seen_level_edges(const MeshView& mesh, std::span<const std::uint32_t> edges,
+                             const VisibleInBox& visible, std::vector<SeenEdge>& seen);
 
 }  // namespace trapeze

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/grid/ring_box.h"
 #include "core/mesh/mesh_index.h"
 #include "render/mask/mask.h"
 #include "server/seed/hilbert_order.h"
@@ -63,11 +64,6 @@ double covered_area(const MeshView& mesh, const MeshTrapezoid& trapezoid, const 
            std::clamp<double>(left.x_at(y), box.min_x, box.max_x);
   };
   return (bottom - top) * (width(top) + width(bottom)) / 2;
-}
-
-double area_of(const Box& box) {
-  return (static_cast<double>(box.max_x) - box.min_x) *
-         (static_cast<double>(box.max_y) - box.min_y);
 }
 
 /// Whether anything other than polygons is drawn with that zoom's selection.

@@ -588,7 +588,7 @@ void LayerDrawing::add_seen_edges(std::uint8_t number, std::span<const std::uint
   sort_and_part(own);
   std::vector<SeenEdge>& seen = lines_of(colour).seen;
   append_seen_sides(mesh, own, visible, seen);
-  for (const std::uint32_t edge : level_edges) append_seen_level_edge(mesh, edge, visible, seen);
+  append_seen_level_edges(mesh, level_edges, visible, seen);
 }
 
 GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selection& selection) {
