@@ -76,7 +76,8 @@ export class FeatureChoice {
     const shape = new Map(taken_by(layer, shapes).filter(([key]) => OF_SHAPES.includes(key)));
     const pixels = this.pixels_across_();
     shape.set("small", "keep");
-    shape.set("highlight-fill", pixels < SMALL ? LINE : TINT);
+    // All of its parts are filled: a part may be small, but not the others.
+    shape.set("highlight-fill", this.whole_pixels_across_() < SMALL ? LINE : TINT);
     if (pixels >= LARGE) {
       const { simplify = 0 } = Object.fromEntries(shape);
       shape.set("simplify", Math.max(PIXELS_IF_LARGE, Number(simplify)));
@@ -108,10 +109,15 @@ export class FeatureChoice {
     if (is_by_key) this.panel_.focus();
   }
 
-  /** The size of the selected feature on the screen; LARGE while unknown. */
+  /** The size of the selected feature on the screen, or of its part under the click; LARGE while unknown. */
   pixels_across_() {
     const found = this.found_.find((feature) => this.is_chosen_(feature));
     return found ? pixels_across(this.map_, found.part_bbox ?? found.bbox) : LARGE;
+  }
+
+  whole_pixels_across_() {
+    const found = this.found_.find((feature) => this.is_chosen_(feature));
+    return found ? pixels_across(this.map_, found.bbox) : LARGE;
   }
 
   /** Selects `feature`, one of those found, or nothing. */

@@ -9,7 +9,7 @@ export class TryPanel {
    * @param opener the button that reopens the panel
    * @param demonstrations {title, words, start(), control: a node}
    * @param places to zoom to: {title, go()}
-   * @param on {started(), ended(): the previous state is to be restored}
+   * @param on {started(), ended(): the previous state is to be restored, covered(): other panels hide it}
    */
   constructor(node, opener, demonstrations, places, on) {
     this.node_ = node;
@@ -19,6 +19,7 @@ export class TryPanel {
     this.is_running_ = false;
     opener.addEventListener("click", () => {
       this.open();
+      if (node.offsetHeight === 0) on.covered();
       node.querySelector("button").focus();
     });
     // Elements at the bottom of the window make room for it.
@@ -36,6 +37,13 @@ export class TryPanel {
     this.end_();
     this.node_.hidden = true;
     this.opener_.hidden = false;
+  }
+
+  /** Another view is shown: the previous state is not to be restored any more. */
+  forget() {
+    if (!this.is_running_) return;
+    this.is_running_ = false;
+    this.open();
   }
 
   make_offer_(demonstrations, places) {

@@ -125,6 +125,8 @@ class Viewer {
     this.tables_ = catalog.tables ?? {};
     this.language_ = language_among(catalog.languages);
     this.start_ = typeof catalog.viewer?.start === "string" ? catalog.viewer.start : "";
+    this.address_ = location.hash; // as last read or written
+    this.coming_ = null; // the view of an address that is not shown yet
     const is_first_sight = location.hash.length < 2;
     const view = this.view_of_(location.hash);
     this.named_ = {};
@@ -178,7 +180,22 @@ class Viewer {
 
   ask_again_(was_away) {
     for (const tiles of this.all_tiles_()) tiles.retry();
-    if (was_away) this.tell_other_layers_();
+    if (!was_away) return;
+    this.tell_other_layers_();
+    this.ask_styles_again_();
+  }
+
+  /** What was chosen while the server was away: its named style, legends and problems have not come. */
+  async ask_styles_again_() {
+    const { view_: view } = this;
+    const name = this.shared_.get("style");
+    const chosen = new Map(name ? [["style", name]] : []);
+    const named = await this.load_named_style_(chosen);
+    if (this.view_ !== view || this.shared_.get("style") !== name) return;
+    if (!chosen.has("style")) this.shared_.delete("style");
+    this.named_ = named;
+    this.show_usual_();
+    this.prove_all_();
   }
 
   /** Reports if a server that was away has come back with different layers. */
@@ -252,7 +269,16 @@ class Viewer {
     this.try_ = new TryPanel($("try"), $("try-open"), shown, places.length > 1 ? places : [], {
       started: () => (this.before_ = this.settings_()),
       ended: () => this.take_settings_(this.before_),
+      covered: () => this.uncover_try_panel_(),
     });
+  }
+
+  /** On a phone, the layers and the features hide it. */
+  uncover_try_panel_() {
+    if (!$("panel-body").hidden) $("panel-toggle").click();
+    if ($("try").offsetHeight > 0) return;
+    this.choice_.show({ at: null, chosen: null });
+    this.show_choice_();
   }
 
   /** Loads the panel on demand, because few users open it. */
@@ -664,10 +690,17 @@ class Viewer {
 
   async read_address_(hash) {
     const view = this.view_of_(hash);
+    this.address_ = location.hash;
+    this.coming_ = view;
+    this.try_.forget();
     await this.show_view_(view);
-    if (!view.place) return;
     // Moving writes the address; skipped if another view has been requested in the meantime.
-    const go = () => this.view_ === view && this.go_to_(view.place);
+    const go = () => {
+      if (this.view_ !== view) return;
+      this.coming_ = null;
+      if (view.place) this.go_to_(view.place);
+      else this.write_address_();
+    };
     // Leaflet accepts no other place while it zooms.
     if (this.is_zooming_) this.map_.once("zoomend", go);
     else go();
@@ -675,6 +708,8 @@ class Viewer {
 
   /** Writes only differences from the defaults, and adds no history entry. */
   write_address_() {
+    // The browser has gone to another address, which is still to be shown, or even to be read.
+    if (this.coming_ || location.hash !== this.address_) return;
     const { lat, lng } = this.map_.getCenter();
     const names = (numbers) => numbers.map((i) => this.layers_[i].name);
     const on = this.layers_.filter((_, i) => this.states_[i].is_on).map(({ name }) => name);
@@ -693,6 +728,7 @@ class Viewer {
     });
     // Slow in browsers, and some refuse frequent calls.
     if (hash !== location.hash) history.replaceState(null, "", hash);
+    this.address_ = location.hash;
   }
 }
 

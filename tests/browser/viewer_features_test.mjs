@@ -200,6 +200,22 @@ test("of a feature in parts, it goes to the part under the click", async () => {
   await page.context().close();
 });
 
+test("a click on a small part of a large feature does not paint over the other parts", async () => {
+  const { page, seen } = await open("#5/46/10&on=land");
+  await page.route("**/identify/**", async (route) => {
+    const response = await route.fetch();
+    const told = await response.json();
+    Object.assign(told.features[0], { bbox: [-170, -80, 170, 80], part_bbox: [10, 46, 10.1, 46.1] });
+    await route.fulfill({ response, json: told });
+  });
+  await page.mouse.click(640, 400);
+  await page.waitForFunction(() =>
+    [...document.querySelectorAll(".leaflet-chosen-pane img.leaflet-tile")].some(({ src }) =>
+      new URL(src).searchParams.get("highlight-fill") === "ffffff40"));
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
 /** The signs of keyboard focus on the map: its outline, and the mark in the middle. */
 function marks_of_focus(page) {
   return page.evaluate(() => {

@@ -241,6 +241,28 @@ test("on a phone all of it is within the window, and nothing lies over another t
   await page.context().close();
 });
 
+test("on a phone it is seen when it is opened from the panel, which folds", async () => {
+  const { page, seen, offer } = await open("#5/45/60", PHONE);
+  await page.locator("#panel-toggle").tap();
+  await page.locator("#try-open").tap();
+  assert.ok(await offer.isVisible());
+  assert.ok(await page.locator("#panel-body").isHidden());
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("another address ends what is tried, and is not taken back with it", async () => {
+  const { page, seen, offer } = await open();
+  await offer.getByRole("button", { name: TRIALS[0] }).click();
+  await page.evaluate(() => (location.hash = "#4/30/60&simplify=8"));
+  await wait_for_queries(page, { simplify: "8" });
+  await offer.getByRole("button", { name: "Close" }).click();
+  await tiles_drawn(page);
+  assert.match(await hash_of(page), /&simplify=8$/);
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
 for (const viewport of [{ width: 844, height: 390 }, { width: 667, height: 375 }, { width: 568, height: 320 }]) {
   test(`so it is on a phone of ${viewport.width} x ${viewport.height} that lies on its side`, async () => {
     const { page, seen, offer } = await open("", { ...PHONE, viewport });

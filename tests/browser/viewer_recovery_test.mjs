@@ -163,6 +163,22 @@ test("a style that changes while the server is away is drawn when it is back", a
   await page.context().close();
 });
 
+test("a named style chosen while the server is away is known when it is back, with its legend", async () => {
+  const { page, status } = await open("#5/46/10");
+  await server.stop();
+  try {
+    await page.locator("#style").selectOption("night");
+    await status.getByText("The server cannot be reached.").waitFor();
+  } finally {
+    await server.start();
+  }
+  await page.waitForFunction(() =>
+    document.querySelector("#map").style.background.includes("rgb(16, 32, 48)") &&
+    document.querySelector("#legend-body .swatch"), null, { timeout: 30_000 });
+  await status.waitFor({ state: "hidden" });
+  await page.context().close();
+});
+
 for (const [device, options] of [["desktop", DESKTOP], ["phone", PHONE]]) {
   test(`${device}: while layers are read the page says which and how far, and starts by itself`,
     async () => {

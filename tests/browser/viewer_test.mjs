@@ -326,3 +326,24 @@ test("a tile that fails is asked for again", async () => {
   assert.deepEqual(seen.errors.filter((text) => !FAILED_RESOURCE.test(text)), []);
   await page.context().close();
 });
+
+test("an address that was gone to is not overwritten before it is shown", async () => {
+  const { page, seen } = await open("#5/45/6");
+  await page.evaluate(() => {
+    window.written = [];
+    const replace = history.replaceState.bind(history);
+    history.replaceState = (...all) => {
+      window.written.push(all[2]);
+      replace(...all);
+    };
+  });
+  await page.evaluate(() => (location.hash = "#6/46/7&style=night"));
+  await page.waitForFunction(() =>
+    document.querySelector("#map").style.background.includes("rgb(16, 32, 48)"));
+  await at_rest(page);
+  await tiles_drawn(page);
+  const written = await page.evaluate(() => window.written);
+  assert.deepEqual(written.filter((hash) => !/^#6\/46\.\d+\/7\.\d+&style=night$/.test(hash)), []);
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
