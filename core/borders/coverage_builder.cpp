@@ -347,12 +347,17 @@ std::optional<SetFaces> choose_faces(const TrapezoidalGraph& g, const SetMap& ma
   return std::nullopt;
 }
 
-Sides sides_of(const TrapezoidalGraph& g, const SetFaces& faces, std::size_t edges) {
+/// Places that only features left out cover get the face `left_out`, which may be kOutside.
+Sides sides_of(const TrapezoidalGraph& g, const SetFaces& faces, const FeatureSets& sets,
+               FaceId left_out, std::size_t edges) {
+  const auto face_of = [&](FaceId set) {
+    return faces[set] == kOutside && !sets[set].empty() ? left_out : faces[set];
+  };
   Sides sides;
   sides.reserve(edges);
   for (std::size_t e = 0; e < edges; ++e) {
     const Edge& edge = g.edge(EdgeId(e));
-    sides.emplace_back(faces[edge.face[kLeft]], faces[edge.face[kRight]]);
+    sides.emplace_back(face_of(edge.face[kLeft]), face_of(edge.face[kRight]));
   }
   return sides;
 }
@@ -365,12 +370,19 @@ struct Gap {
 };
 
 /// Gives narrow gaps between features the face of a neighbour; returns the number of such gaps.
-std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides) {
+/// `left_out` is the face of features left out: their places are no gaps, and become kOutside.
+std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, const FaceFeatures& faces,
+                      FaceId left_out, Sides& sides) {
   const Regions regions(g);
   std::vector<Gap> gaps(regions.face.size());
   const auto hole_beside = [&](std::size_t e, Side s) {
     const RegionId region = regions.beside[EdgeId(e)][s];
     return regions.face[region] == kOutside && region != regions.unbounded ? region : RegionId();
+  };
+  // Beside a place of several features, a gap goes to the uppermost: no overlap becomes larger.
+  const auto neighbour = [&faces](FaceId face) {
+    const auto features = faces.of(face);
+    return features.size() < 2 ? face : features.back() + 1;
   };
   for (std::size_t e = 0; e < sides.size(); ++e) {
     for (const Side s : {kLeft, kRight}) {
@@ -381,7 +393,8 @@ std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides
       Gap& gap = gaps[hole.value];
       gap.reach = cells_from_ground(widest_gap, g.point(edge.end[kUp]).y);
       gap.border += length;
-      gap.neighbours.add(s == kLeft ? sides[e].second : sides[e].first, length);
+      const FaceId beyond = s == kLeft ? sides[e].second : sides[e].first;
+      if (beyond != left_out) gap.neighbours.add(neighbour(beyond), length);
     }
   }
   const auto is_narrow = [&](RegionId hole) {
@@ -396,6 +409,10 @@ std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides
       if (hole.is_none() || !is_narrow(hole)) continue;
       (s == kLeft ? sides[e].first : sides[e].second) = gaps[hole.value].neighbours.longest();
     }
+  }
+  for (auto& [left, right] : sides) {
+    if (left == left_out) left = kOutside;
+    if (right == left_out) right = kOutside;
   }
   std::size_t filled = 0;
   for (std::size_t r = 0; r < gaps.size(); ++r) filled += is_narrow(RegionId(r));
@@ -497,10 +514,13 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   const std::optional<SetFaces> faces = choose_faces(graph, map, features, tolerance, outcome);
   if (!faces) return outcome;
   tell(0.6);
-  Sides sides = sides_of(graph, *faces, boundary_.edges.size());
+  const bool fills_gaps = tolerance.widest_gap > 0;
+  const FaceId left_out =
+      fills_gaps ? static_cast<FaceId>(outcome.faces.face_count() + 1) : kOutside;
+  Sides sides = sides_of(graph, *faces, map.sets(), left_out, boundary_.edges.size());
   if (!keep_what_divides(sides, boundary_, trapezoidation_, graph, threads)) return outcome;
-  if (tolerance.widest_gap > 0) {
-    outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
+  if (fills_gaps) {
+    outcome.filled = fill_gaps(graph, tolerance.widest_gap, outcome.faces, left_out, sides);
     if (!keep_what_divides(sides, boundary_, trapezoidation_, graph, threads)) return outcome;
   }
   tell(0.8);
@@ -559,7 +579,7 @@ class FeatureRings {
     std::sort(ends_.begin(), ends_.end());
     is_used_.assign(ends_.size(), false);
     for (std::size_t i = 0; i < ends_.size(); ++i) {
-      if (!is_used_[i]) walk(ends_[i]);
+      if (!is_used_[i]) walk(i);
     }
   }
 
@@ -591,30 +611,70 @@ class FeatureRings {
     for_each_apart(right, left, add_to);
   }
 
-  /// Walks from arc to arc until none is left to continue with. At each vertex a feature has an
-  /// even number of ends of arcs, so the walk ends where the ring began.
-  void walk(ArcEnd at) {
-    Rings& rings = rings_[at.feature];
-    for (;;) {
-      append(at.corner, at.other, rings);
-      use(at);
-      at = {at.feature, g_.corner(at.other).vertex, at.other, at.corner};
-      use(at);
-      auto next = std::lower_bound(ends_.begin(), ends_.end(),
-                                   ArcEnd{at.feature, at.vertex, CornerId(0), CornerId(0)});
-      const auto is_there = [&] {
-        return next != ends_.end() && next->feature == at.feature && next->vertex == at.vertex;
-      };
-      while (is_there() && is_used_[static_cast<std::size_t>(next - ends_.begin())]) ++next;
-      if (!is_there()) break;
-      at = *next;
-    }
+  /// Walks from arc to arc until the ring is back where it began.
+  void walk(std::size_t start) {
+    Rings& rings = rings_[ends_[start].feature];
+    std::size_t at = start;
+    do {
+      const ArcEnd& end = ends_[at];
+      append(end.corner, end.other, rings);
+      is_used_[at] = true;
+      const ArcEnd arrived{end.feature, g_.corner(end.other).vertex, end.other, end.corner};
+      const auto found = std::lower_bound(ends_.begin(), ends_.end(), arrived);
+      is_used_[static_cast<std::size_t>(found - ends_.begin())] = true;
+      at = next_of(arrived, start);
+    } while (at != start);
     rings.close_ring();
   }
 
-  void use(const ArcEnd& end) {
-    const auto found = std::lower_bound(ends_.begin(), ends_.end(), end);
-    is_used_[static_cast<std::size_t>(found - ends_.begin())] = true;
+  /// Where a ring that arrived at a vertex continues: at the next end around the vertex, across the
+  /// inside of the feature. So rings touch themselves and each other, but do not cross. At each
+  /// vertex a feature has an even number of ends of arcs, so there is one until the ring is closed.
+  std::size_t next_of(const ArcEnd& arrived, std::size_t start) const {
+    const auto first =
+        std::lower_bound(ends_.begin(), ends_.end(),
+                         ArcEnd{arrived.feature, arrived.vertex, CornerId(0), CornerId(0)});
+    auto i = static_cast<std::size_t>(first - ends_.begin());
+    std::optional<std::size_t> next;
+    for (; i < ends_.size() && ends_[i].feature == arrived.feature &&
+           ends_[i].vertex == arrived.vertex;
+         ++i) {
+      if (is_used_[i] && i != start) continue;
+      if (!next || is_before(ends_[i], ends_[*next], arrived)) next = i;
+    }
+    return next.value_or(start);
+  }
+
+  /// Whether the first of two ends at a vertex comes before the second one on the way around it
+  /// from the arc that arrived there, across the inside beside that arc.
+  bool is_before(const ArcEnd& one, const ArcEnd& other, const ArcEnd& arrived) const {
+    const Edge& edge = edge_at(arrived);
+    const auto on_the_left = faces_.of(edge.face[kLeft]);
+    const bool is_left = std::ranges::find(on_the_left, arrived.feature) != on_the_left.end();
+    // As seen from the vertex, the left of an edge that leads down is on the right.
+    const bool turns_right = is_left == (edge.end[kUp] == arrived.vertex);
+    const Point vertex = g_.point(arrived.vertex);
+    const Point from = point_beyond(arrived);
+    const auto is_farther = [&](Point a, Point b) {
+      const std::int64_t turn = orientation(vertex, a, b);
+      return turns_right ? turn > 0 : turn < 0;
+    };
+    const auto is_in_first_half = [&](Point p) { return is_farther(from, p); };
+    const Point a = point_beyond(one);
+    const Point b = point_beyond(other);
+    if (is_in_first_half(a) != is_in_first_half(b)) return is_in_first_half(a);
+    return is_farther(a, b);
+  }
+
+  const Edge& edge_at(const ArcEnd& end) const {
+    const Corner& corner = g_.corner(end.corner);
+    return g_.edge(corner.next.is_none() ? g_.corner(corner.prev).edge : corner.edge);
+  }
+
+  /// The other end of the edge at the end of an arc.
+  Point point_beyond(const ArcEnd& end) const {
+    const Edge& edge = edge_at(end);
+    return g_.point(edge.end[edge.end[kUp] == end.vertex ? kDown : kUp]);
   }
 
   /// The points of an arc between its ends, including the end at which it begins.

@@ -3,16 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <set>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "core/adapt/adaptable_graph.h"
 #include "core/adapt/history_recorder.h"
 #include "core/borders/coverage_builder.h"
 #include "core/graph/check_graph.h"
+#include "core/grid/ring_box.h"
 #include "tests/core/borders/coverage_shapes.h"
 #include "tests/core/shapes/drawn_trapezoids.h"
 #include "tests/sanitized.h"
@@ -303,6 +307,30 @@ TEST(CoverageInCommon, FeaturesKeepTheirAreas) {
     }
   }
   EXPECT_GT(shared, kShapes / 8);
+}
+
+TEST(CoverageInCommon, RingsOfFeaturesDoNotCross) {
+  unsigned touching = 0;
+  for (unsigned seed = 0; seed < kShapes; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const BuiltCoverage c(random_coverage(seed), kNone);
+    if (!c.outcome.built) continue;
+    for (const Rings& rings : rings_of_features(c.graph, c.outcome.faces)) {
+      for (std::size_t i = 0; i < rings.size(); ++i) {
+        const std::span<const Point> ring = rings[i];
+        std::set<std::pair<std::int32_t, std::int32_t>> places;
+        for (const Point p : ring) places.emplace(p.x, p.y);
+        if (places.size() == ring.size()) continue;
+        ++touching;
+        Rings alone;
+        alone.add(ring);
+        // Where it crossed itself, parts would cancel each other out.
+        const std::array<const Rings*, 1> features = {&alone};
+        EXPECT_DOUBLE_EQ(overlay(features).areas.at(0), area_of_ring(ring)) << "ring " << i;
+      }
+    }
+  }
+  EXPECT_GT(touching, 0u);
 }
 
 /// Calls check(history, level, adapted graph, faces) for every level of the coverages of the first

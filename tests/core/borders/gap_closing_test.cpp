@@ -332,6 +332,26 @@ std::vector<Rings> carelessly_drawn(unsigned seed) {
   return features;
 }
 
+TEST(GapClosing, PlacesOfFeaturesLeftOutAreNotFilled) {
+  // Between the two others lies a strip that overlaps the first of them too much to be built with
+  // them.
+  const std::vector<Rings> features =
+      Closing(Texts{"0 0, 50 0, 50 10, 50 20, 45 20, 45 80, 50 80, 50 90, 50 100, 0 100",
+                    "100 0, 100 100, 50 100, 50 90, 50 80, 55 80, 55 20, 50 20, 50 10, 50 0",
+                    "44 20, 55 20, 55 80, 44 80"},
+              0.1)
+          .features;
+  std::vector<const Rings*> pointers;
+  for (const Rings& rings : features) pointers.push_back(&rings);
+  TrapezoidalGraph graph;
+  const CoverageOutcome outcome =
+      CoverageBuilder().build(pointers, {.most_overlap = 0.01, .widest_gap = metres_of(20)}, graph);
+  EXPECT_EQ(check_graph(graph), "");
+  EXPECT_THAT(outcome.apart, ElementsAre(2u));
+  EXPECT_EQ(outcome.filled, 0u);
+  EXPECT_EQ(outcome.gaps, 1u);
+}
+
 TEST(GapClosing, CarelesslyDrawnNeighboursBecomeACoverage) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
