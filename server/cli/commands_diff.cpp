@@ -1,6 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "server/changes/tile_list.h"
 #include "server/cli/commands.h"
 #include "server/config/load_config.h"
+#include "server/tiles/open_fonts.h"
 
 namespace trapeze {
 namespace {
@@ -38,6 +40,9 @@ ChangeRequest make_request(const DiffArguments& arguments) {
   }
   request.zooms = *zooms;
   request.certainty = word_or_throw("--certainty", arguments.certainty, kCertaintyNames);
+  if (request.tile.style.value_for(kLayer, ParameterId::label)) {
+    request.labels = std::make_shared<LabelBook>(FontChoice{open_fonts({})});
+  }
   return request;
 }
 

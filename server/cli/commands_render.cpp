@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
+#include "core/io/file/atomic_file.h"
 #include "render/picture/webp.h"
 #include "server/base/nearest_name.h"
 #include "server/base/url.h"
@@ -63,11 +66,18 @@ TileRequest make_request(const RenderArguments& arguments, const std::vector<Lay
   return request;
 }
 
+/// A file of that name stays as it is unless everything is written.
 void write_file(const std::string& path, const std::string& bytes) {
-  std::ofstream file(path, std::ios::binary);
+  const Unfinished unfinished = Unfinished::file_beside(path);
+  errno = 0;
+  std::ofstream file(unfinished.path(), std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
-  if (!file) throw std::runtime_error(fmt::format("cannot write {}", path));
+  if (!file) {
+    throw std::runtime_error(
+        fmt::format("cannot write {}: {}", path, std::generic_category().message(errno)));
+  }
+  give_name_durably(unfinished, path);
 }
 
 }  // namespace

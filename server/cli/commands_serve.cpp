@@ -136,6 +136,15 @@ LayerSource layer_source(const ServeArguments& arguments, const Config& running)
   return {layers, arguments.config, [values] { return *values; }};
 }
 
+/// Blocks SIGHUP, also in threads started later, or lets a blocked one through to the calling
+/// thread.
+void hold_hangups(int how) {
+  sigset_t hangups;
+  sigemptyset(&hangups);
+  sigaddset(&hangups, SIGHUP);
+  pthread_sigmask(how, &hangups, nullptr);
+}
+
 [[noreturn]] void end_now(ServerLog& log) {
   // Neither reading a large file, nor placing its labels, nor waiting for a database can be
   // interrupted, and the result is not needed any more. Objects must not be destroyed while the
@@ -167,6 +176,9 @@ Config configure(const ServeArguments& arguments) {
 int run_serve(const ServeArguments& arguments) {
   // The server continues when the reader of its log exits.
   std::signal(SIGPIPE, SIG_IGN);
+  // Until something acts on it, SIGHUP would end the server; and systemd does not restart what it
+  // ends.
+  hold_hangups(SIG_BLOCK);
   ServerLog log;
   const Config config = configure(arguments);
   if (!arguments.is_verbose) spdlog::set_level(spdlog::level::from_str(config.log.level));
@@ -175,6 +187,7 @@ int run_serve(const ServeArguments& arguments) {
   check_files_exist(config.layers);
   Service service(config, layer_source(arguments, config));
   service.act_on_signals();
+  hold_hangups(SIG_UNBLOCK);
   service.run();
   if (!service.finish()) end_now(log);
   spdlog::info("stopped");

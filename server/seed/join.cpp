@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/io/file/atomic_file.h"
 #include "server/seed/write_archive.h"
 
 namespace trapeze {
@@ -72,6 +73,9 @@ void check_place_of_archive(const std::string& path) {
   if (!is_folder && fs::is_directory(path, error)) {
     throw std::runtime_error(fmt::format("cannot write {}: it is a folder", path));
   }
+  if (kind_of_archive(path) != ArchiveKind::mbtiles) return;
+  const std::string problem = problem_with_database_at(path);
+  if (!problem.empty()) throw std::runtime_error(fmt::format("cannot write {}: {}", path, problem));
 }
 
 /// For an archive that would have no tiles: directories of PMTiles must not be empty.

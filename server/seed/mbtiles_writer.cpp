@@ -139,6 +139,10 @@ void MbtilesWriter::finish() {
   add_content_.reset();
   add_tile_.reset();
   database_.reset();
+  const std::string problem = problem_with_database_at(path_);
+  if (!problem.empty()) {
+    throw std::runtime_error(fmt::format("cannot write {}: {}", path_, problem));
+  }
   give_name_durably(temporary_, path_);
 }
 

@@ -12,6 +12,7 @@
 #include <cpl_string.h>
 
 #include "core/io/export/polygon_geometry.h"
+#include "core/io/file/atomic_file.h"
 #include "core/io/source/open_source.h"
 
 namespace trapeze {
@@ -28,6 +29,12 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail_to_write(const std::string& path, const std::string& what) {
   throw std::runtime_error(path + ": cannot be written: " + what);
+}
+
+void check_place_of_database(const std::string& path, std::string_view driver) {
+  if (driver != "GPKG") return;
+  const std::string problem = problem_with_database_at(path);
+  if (!problem.empty()) fail_to_write(path, problem);
 }
 
 fs::path folder_of(const std::string& path) {
@@ -60,13 +67,14 @@ const VectorFile::Format& VectorFile::format_of(const std::string& path) {
 }
 
 void VectorFile::check_path(const std::string& path, const std::string& source, bool overwrite) {
-  format_of(path);
+  const Format& format = format_of(path);
   std::error_code ignored;
   const fs::path folder = folder_of(path);
   if (!fs::is_directory(folder, ignored)) {
     fail_to_write(path, "there is no folder " + folder.string());
   }
   if (fs::equivalent(path, source, ignored)) fail_to_write(path, "it is the source itself");
+  check_place_of_database(path, format.driver);
   const fs::file_type type = fs::symlink_status(path, ignored).type();
   if (type == fs::file_type::not_found) return;
   if (type != fs::file_type::regular) {
@@ -154,6 +162,7 @@ void VectorFile::finish() {
     fail("only " + std::to_string(found) + " of " + std::to_string(written_) +
          " features arrived; is the disk full?");
   }
+  check_place_of_database(path_, format_.driver);
   std::error_code error;
   Unfinished::give_name(unfinished_, path_, error);
   if (error) fail(error.message());

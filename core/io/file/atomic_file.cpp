@@ -89,6 +89,17 @@ void give_name_durably(const Unfinished& unfinished, const std::string& path) {
   sync_folder_of(path);
 }
 
+std::string problem_with_database_at(const std::string& path) {
+  for (const char* ending : {"-wal", "-journal"}) {
+    const std::string log = path + ending;
+    std::error_code error;
+    if (!std::filesystem::exists(log, error)) continue;
+    return "another program has it open, or ended without closing it, and left " + log +
+           ", which would damage the new file; close that program, or remove " + log;
+  }
+  return {};
+}
+
 void write_atomically(const std::string& path,
                       const std::vector<std::span<const std::byte>>& pieces) {
   AtomicFile file(path);

@@ -39,6 +39,11 @@ class AtomicFile {
 /// folder of that name. Throws std::runtime_error that names the path and the reason.
 void give_name_durably(const Unfinished& unfinished, const std::string& path);
 
+/// Why no SQLite database may get that name, in words; empty if it may. A log or a journal that
+/// belongs to another database of that name, which a program has open or did not close, would be
+/// applied to the new one and damage it.
+std::string problem_with_database_at(const std::string& path);
+
 /// Writes the pieces one after another into a new, read-only file beside `path`, waits until they
 /// are on disk, and only then renames it to `path`, replacing a file of that name. If anything
 /// fails before, `path` stays unchanged and nothing is left beside it (see unfinished.h). Throws

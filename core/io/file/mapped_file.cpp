@@ -21,9 +21,16 @@ namespace {
   throw std::runtime_error(path + ": " + what);
 }
 
+[[noreturn]] void fail_to_map(const std::string& path, const std::string& what, int error) {
+  const std::string words = path + ": " + what + ": " + std::strerror(error);
+  const bool is_shortage = error == EMFILE || error == ENFILE || error == ENOMEM || error == EAGAIN;
+  if (is_shortage) throw MappingShortage(words);
+  throw std::runtime_error(words);
+}
+
 int open_or_throw(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) fail_to_map(path, std::string("cannot be read: ") + std::strerror(errno));
+  if (file < 0) fail_to_map(path, "cannot be read", errno);
   return file;
 }
 
@@ -34,20 +41,23 @@ std::int64_t modified_of(const struct stat& status) {
 }  // namespace
 
 /// Registers mappings. Reading a part that a file no longer has raises SIGBUS. If that happens
-/// within a registered mapping, the page is replaced by zeros and the reader continues.
+/// within a registered mapping, the page is replaced by zeros and the reader continues. The page
+/// stays replaced, even if the file gets its bytes back.
 class MappingGuard {
  public:
-  static void add(std::span<const std::byte> bytes) {
+  /// Returns what tells whether a page was replaced; null if there is no room for another mapping.
+  static const std::atomic<bool>* add(std::span<const std::byte> bytes) {
     static std::once_flag once;
     std::call_once(once, catch_signal);
     for (Slot& slot : slots()) {
       std::uintptr_t none = 0;
       if (!slot.begin.compare_exchange_strong(none, kTaken)) continue;
       slot.end = begin_of(bytes) + bytes.size();
+      slot.is_torn = false;
       slot.begin = begin_of(bytes);
-      return;
+      return &slot.is_torn;
     }
-    // More files than slots: the others are mapped without a guard.
+    return nullptr;  // more files than slots: the others are mapped without a guard
   }
   static void remove(std::span<const std::byte> bytes) {
     for (Slot& slot : slots()) {
@@ -63,10 +73,12 @@ class MappingGuard {
   struct Slot {
     std::atomic<std::uintptr_t> begin = 0;  // 0: free
     std::atomic<std::uintptr_t> end = 0;
+    std::atomic<bool> is_torn = false;
   };
   static constexpr std::uintptr_t kTaken = 1;  // begin of a slot whose end is being written
   using Slots = std::array<Slot, kMostFiles>;
-  static_assert(std::atomic<std::uintptr_t>::is_always_lock_free);
+  static_assert(std::atomic<std::uintptr_t>::is_always_lock_free &&
+                std::atomic<bool>::is_always_lock_free);
 
   static Slots& slots() {
     static Slots slots{};
@@ -94,12 +106,13 @@ class MappingGuard {
   // Makes only system calls. A file that is being read is mapped, so it stays in its slot.
   static void on_signal(int, siginfo_t* info, void*) {
     const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
-    for (const Slot& slot : slots()) {
+    for (Slot& slot : slots()) {
       const std::uintptr_t begin = slot.begin;
       const std::uintptr_t end = slot.end;
       if (begin <= kTaken || address < begin || address >= end || slot.begin != begin) continue;
       auto* const page = static_cast<std::byte*>(info->si_addr) - address % page_size();
       const int error = errno;
+      slot.is_torn = true;  // before anybody can read the zeros
       const void* zeros =
           mmap(page, page_size(), PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0);
       errno = error;
@@ -131,10 +144,10 @@ void MappedFile::map(const std::string& path, Pages pages) {
   const int flags = pages == Pages::at_once ? MAP_SHARED | MAP_POPULATE : MAP_SHARED;
   void* memory = mmap(nullptr, size, PROT_READ, flags, file_, 0);
   if (memory == MAP_FAILED) {
-    fail_to_map(path, std::string("cannot be mapped: ") + std::strerror(errno));
+    fail_to_map(path, "cannot be mapped", errno);
   }
   bytes_ = {static_cast<const std::byte*>(memory), size};
-  MappingGuard::add(bytes_);
+  is_torn_ = MappingGuard::add(bytes_);
 }
 
 MappedFile::~MappedFile() {
@@ -152,6 +165,7 @@ void MappedFile::release_pages() const {
 
 // The descriptor refers to the mapped file, whatever its name refers to by now.
 bool MappedFile::is_whole() const {
+  if (is_torn_ != nullptr && *is_torn_) return false;
   struct stat status {};
   return fstat(file_, &status) == 0 && static_cast<std::size_t>(status.st_size) == bytes_.size() &&
          modified_of(status) == modified_;

@@ -4,11 +4,13 @@
 #include <array>
 #include <chrono>
 #include <filesystem>
+#include <new>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "core/grid/digest.h"
+#include "core/io/file/mapped_file.h"
 #include "core/io/file/prepared_file.h"
 #include "core/layer/layer_arrays.h"
 
@@ -226,6 +228,10 @@ std::shared_ptr<const Layer> PreparedPart::layer() const {
     LoadedLayer loaded = open_summarized_layer(path_, summary_);
     file_ = std::move(loaded.file);
     layer_ = std::move(loaded.layer);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const MappingShortage&) {
+    throw;
   } catch (const std::exception& error) {
     problem_ = error.what();
     has_failed_ = true;

@@ -31,7 +31,8 @@ class PreparedPart {
   const PartNumber& number() const { return *summary_.part; }
 
   /// Mapped and checked on the first call, which takes about 0.4 ms per megabyte. Null if that
-  /// fails: then is_damaged() is true.
+  /// fails: then is_damaged() is true. Throws if only memory or descriptors are short: the next
+  /// call tries again.
   std::shared_ptr<const Layer> layer() const;
   /// Null if layer() has not been called so far.
   std::shared_ptr<const Layer> layer_if_open() const;

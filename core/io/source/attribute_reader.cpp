@@ -33,11 +33,40 @@ std::string utf8_from_latin1(const char* text) {
   return recoded.get();
 }
 
+/// A Shapefile cuts names and values after a number of bytes, even within a character. Text that is
+/// UTF-8 up to there, and not only ASCII, loses what is left of that character; any other text is
+/// Latin-1.
+std::string utf8_from_other(std::string_view text) {
+  const auto byte = [text](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  std::size_t begin = text.size();  // of the last character: its first byte is 11xxxxxx
+  while (begin > 0 && (byte(begin - 1) & 0xC0) == 0x80) --begin;
+  if (begin > 0 && (byte(begin - 1) & 0xC0) == 0xC0) {
+    const std::string whole(text.substr(0, begin - 1));
+    const bool is_ascii = std::ranges::all_of(whole, [](unsigned char c) { return c < 0x80; });
+    if (!is_ascii && is_utf8(whole.c_str())) return whole;
+  }
+  return utf8_from_latin1(std::string(text).c_str());
+}
+
 template <typename Number>
 std::string shortest(Number number) {
   std::array<char, 40> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
   return std::string(text.data(), end);
+}
+
+/// A real as its source displays it. Of single precision, that is the shortest decimal that gives
+/// the same number: 0.3, where its double is 0.30000001192092896.
+double real_of(const OGRFeature& feature, int index) {
+  const double number = feature.GetFieldAsDouble(index);
+  const auto single = static_cast<float>(number);
+  const bool is_single = feature.GetFieldDefnRef(index)->GetSubType() == OFSTFloat32;
+  // GeoPackages may contain more digits than the type of their columns.
+  if (!is_single || static_cast<double>(single) != number) return number;
+  const std::string text = shortest(single);
+  double written = number;
+  std::from_chars(text.data(), text.data() + text.size(), written);
+  return written;
 }
 
 // GDAL counts time zones in quarters of an hour from 100, which is UTC; 0 and 1 mean none.
@@ -83,7 +112,7 @@ std::string value_in_words(const OGRFeature& feature, int index, OGRFieldType ty
   if (type == OFTInteger || type == OFTInteger64) {
     return shortest(feature.GetFieldAsInteger64(index));
   }
-  if (type == OFTReal) return shortest(feature.GetFieldAsDouble(index));
+  if (type == OFTReal) return shortest(real_of(feature, index));
   if (type == OFTDate || type == OFTTime || type == OFTDateTime) {
     return iso_date(feature, index, type);
   }
@@ -101,7 +130,7 @@ void AttributeReader::add_layer(const OGRFeatureDefn& definition) {
   for (int i = 0; i < definition.GetFieldCount(); ++i) {
     const OGRFieldDefn& field = *definition.GetFieldDefn(i);
     const char* raw_name = field.GetNameRef();
-    const std::string name = is_utf8(raw_name) ? raw_name : utf8_from_latin1(raw_name);
+    const std::string name = is_utf8(raw_name) ? raw_name : utf8_from_other(raw_name);
     if (!is_kept(name)) {
       fields.push_back(kNotKept);
       continue;
@@ -147,19 +176,19 @@ Value AttributeReader::read_value(const OGRFeature& feature, int index, std::siz
   if (fields_[field].type == FieldType::integer) {
     return static_cast<std::int64_t>(feature.GetFieldAsInteger64(index));
   }
-  if (fields_[field].type == FieldType::real) return feature.GetFieldAsDouble(index);
+  if (fields_[field].type == FieldType::real) return real_of(feature, index);
   if (type == OFTString) return utf8_text(field, feature.GetFieldAsString(index));
   return keep_text(field, value_in_words(feature, index, type));
 }
 
 Value AttributeReader::keep_text(std::size_t field, std::string text) {
-  texts_[field] = is_utf8(text.c_str()) ? std::move(text) : utf8_from_latin1(text.c_str());
+  texts_[field] = is_utf8(text.c_str()) ? std::move(text) : utf8_from_other(text);
   return std::string_view(texts_[field]);
 }
 
 Value AttributeReader::utf8_text(std::size_t field, const char* text) {
   if (is_utf8(text)) return std::string_view(text);
-  texts_[field] = utf8_from_latin1(text);
+  texts_[field] = utf8_from_other(text);
   return std::string_view(texts_[field]);
 }
 

@@ -70,6 +70,33 @@ std::size_t end_of_quoted(std::string_view sql, std::size_t at) {
   return at;
 }
 
+/// SQLite takes a name in double quotes for text if there is no such column, without a word: a
+/// condition on a misspelt column would hold for every feature, or for none. In backquotes, a name
+/// is always a name. Names that contain quotes stay as they are.
+std::string with_names_in_backquotes(std::string_view where) {
+  std::string text;
+  for (std::size_t at = 0; at < where.size();) {
+    const bool is_name = where[at] == '"';
+    std::size_t end = std::max(end_of_quoted(where, at), at + 1);
+    while (is_name && end < where.size() && where[end] == '"') end = end_of_quoted(where, end);
+    const std::string_view piece = where.substr(at, end - at);
+    at = end;
+    if (is_name && piece.size() > 2 && piece.back() == '"' &&
+        piece.find("\"\"") == std::string_view::npos && piece.find('`') == std::string_view::npos) {
+      text.append("`").append(piece.substr(1, piece.size() - 2)).append("`");
+    } else {
+      text += piece;
+    }
+  }
+  return text;
+}
+
+/// The condition in the words of the driver.
+std::string condition_for(std::string_view driver, const std::string& where) {
+  const bool is_sqlite = driver == "GPKG" || driver == "SQLite";
+  return is_sqlite ? with_names_in_backquotes(where) : where;
+}
+
 /// A database would take what comes behind a semicolon for another statement: some pass over it
 /// without a word, others do what it says.
 bool has_several_statements(std::string_view where) {
@@ -127,7 +154,7 @@ void FeatureSource::select_ids(const SourceSelection& selection) {
   }
   has_condition_ = true;
   ids_ = selection.ids;
-  condition_ = selection.where;
+  condition_ = condition_for(driver(), selection.where);
   stored_.assign(1, -1);  // the number is unknown
 }
 
@@ -194,7 +221,8 @@ std::string FeatureSource::apply_condition(const std::string& where) {
 
 std::string FeatureSource::apply_condition(const std::string& where, OGRLayer& layer) {
   messages_.clear();
-  if (layer.SetAttributeFilter(where.c_str()) != OGRERR_NONE) return messages_.text();
+  const std::string condition = condition_for(driver(), where);
+  if (layer.SetAttributeFilter(condition.c_str()) != OGRERR_NONE) return messages_.text();
   if (!is_asked_when_read(driver())) return {};
   const OGRFeatureUniquePtr first(layer.GetNextFeature());
   layer.ResetReading();
@@ -227,6 +255,12 @@ std::vector<std::string> FeatureSource::warnings() const {
   }
   if (!failure_ahead_.empty()) {
     warnings.push_back("cannot be read as a whole: " + failure_ahead_);
+  }
+  for (const SourceLayer& layer : layers_) {
+    // Each .dbf has a column, if only one of numbers.
+    if (driver() != "ESRI Shapefile" || layer.layer->GetLayerDefn()->GetFieldCount() > 0) continue;
+    warnings.push_back("its layer \"" + std::string(layer.layer->GetName()) +
+                       "\" has no .dbf, so its features have no attributes");
   }
   if (driver() == "TopoJSON") return warnings;  // its coordinates are degrees, if possible
   for (const SourceLayer& layer : layers_) {

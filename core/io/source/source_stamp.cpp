@@ -22,6 +22,12 @@ namespace {
 /// does not list one that it cannot use.
 constexpr std::array kBesideShapes = {".prj", ".PRJ", ".cpg", ".CPG"};
 
+/// The log to which SQLite appends changes, and transfers them to the file later, such as when the
+/// program that made them closes it.
+std::string log_of_database(const std::string& path) {
+  return path + "-wal";
+}
+
 struct FileState {
   std::uint64_t size;
   std::int64_t modified;
@@ -33,6 +39,12 @@ std::optional<FileState> state_of(const std::string& path) {
   if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
   return FileState{static_cast<std::uint64_t>(status.st_size),
                    std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
+}
+
+/// Reading a database may leave an empty log.
+bool is_filled(const std::string& log) {
+  const auto state = state_of(log);
+  return state && state->size > 0;
 }
 
 std::filesystem::path folder_of(const std::string& path) {
@@ -69,16 +81,21 @@ std::vector<std::string> files_of(const std::string& path) {
       if (state_of(file) && !is_named(file, files)) files.push_back(file);
     }
   }
+  const std::string log = log_of_database(path);
+  if (is_filled(log) && !is_named(log, files)) files.push_back(log);
   std::sort(files.begin(), files.end());
   return files;
 }
 
-/// A file that a Shapefile with that stem has got beside it since then, in words.
+/// A file that has come to a database, or to a Shapefile with that stem, since then, in words.
 std::string addition_since(const SourceStamp& stamp, const std::string& stem,
                            const std::filesystem::path& now) {
   std::vector<std::string> names;
   names.reserve(stamp.files.size());
   for (const FileStamp& file : stamp.files) names.push_back(file.name);
+  const std::string log = log_of_database(now.string());
+  const std::string log_then = log_of_database(std::filesystem::path(stamp.path).filename());
+  if (is_filled(log) && !is_named(log_then, names)) return log + " is new";
   if (!is_named(stem + ".shp", names)) return {};
   for (const char* ending : kBesideShapes) {
     if (is_named(stem + ending, names)) continue;

@@ -28,10 +28,15 @@ struct Area {
   double north = 0;
 };
 
-/// "EPSG:2056": an authority and a code.
+/// "EPSG:2056": an authority and a code. PROJ knows "epsg:2056" as well, but clients do not, and it
+/// would be another grid and another file.
 bool is_code(const std::string& name) {
   const std::size_t colon = name.find(':');
   if (colon == std::string::npos || colon == 0 || colon + 1 == name.size()) return false;
+  const auto is_small = [](unsigned char c) { return std::islower(c) != 0; };
+  if (std::any_of(name.begin(), name.begin() + static_cast<std::ptrdiff_t>(colon), is_small)) {
+    return false;
+  }
   return std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == ':' || c == '_' || c == '-' || c == '.';
   });

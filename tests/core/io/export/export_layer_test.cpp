@@ -366,6 +366,21 @@ TEST_P(ExportFormatTest, AFileOfWhichNothingIsLeftHasFieldsAndNoFeatures) {
   EXPECT_EQ(written.size(), 0u);
 }
 
+TEST_P(ExportFormatTest, AGeoPackageThatIsOpenElsewhereIsNotReplaced) {
+  const std::string source = metres_source(folder_, {{.wkt = kSquare}});
+  folder_.write("out" + GetParam(), "precious");
+  folder_.write("out" + GetParam() + "-wal", "what SQLite would apply to the new file");
+  ExportOptions options;
+  options.overwrite = true;
+  if (GetParam() == ".gpkg") {
+    EXPECT_THAT(error_of(source, output(), options),
+                AllOf(HasSubstr("cannot be written"), HasSubstr(output() + "-wal")));
+    EXPECT_EQ(read_file(output()), "precious");
+  } else {
+    EXPECT_NO_THROW(export_layer(source, output(), options));
+  }
+}
+
 TEST_P(ExportFormatTest, AnExistingFileIsReplacedOnlyIfAskedFor) {
   const std::string source = metres_source(folder_, {{.wkt = kSquare}});
   folder_.write("out" + GetParam(), "precious");

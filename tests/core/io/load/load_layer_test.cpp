@@ -522,6 +522,23 @@ TEST_F(LoadLayerTest, TakesTextThatIsNoUtf8ForLatin1) {
   EXPECT_EQ(text(*load_layer(path).layer, 0, "name"), "Müll");
 }
 
+TEST_F(LoadLayerTest, CutsTextThatEndsWithinACharacter) {
+  const auto name_of = [this](const std::string& name) {
+    const std::string path =
+        folder_.write("a.geojson", "{\"type\":\"Feature\",\"properties\":{\"name\":\"" + name +
+                                       "\"},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":"
+                                       "[[[0,0],[1,0],[1,1],[0,0]]]}}");
+    return text(*load_layer(path).layer, 0, "name");
+  };
+  EXPECT_EQ(name_of("Fläche m\xc2"), "Fläche m");
+  EXPECT_EQ(name_of("地块编\xe5"), "地块编");
+  EXPECT_EQ(name_of("地块编\xe5\x8f"), "地块编");
+  EXPECT_EQ(name_of("caf\xe9"), "café");
+  EXPECT_EQ(name_of("b\xe9"
+                    "b\xe9"),
+            "bébé");
+}
+
 TEST_F(LoadLayerTest, SaysThatASourceBreaksOff) {
   const std::string path = folder_.file("a.fgb");
   TestLayer layer;

@@ -448,6 +448,16 @@ TEST_F(PreparedLayerTest, IsServedWithoutItsSource) {
   EXPECT_NO_THROW(open_prepared_layer(prepared_, {{}, path("elsewhere.geojson")}));
 }
 
+TEST_F(PreparedLayerTest, IsRefusedWhenADatabaseHasChangesThatAreNotInTheFileYet) {
+  const std::string file = path("town.gpkg");
+  write_source(file, "GPKG", {{.features = {{"POLYGON((0 0,1 0,1 1,0 0))", 1, "a"}}}});
+  prepare(file, prepared_);
+  std::ofstream(file + "-wal").flush();
+  EXPECT_NO_THROW(open_prepared_layer(prepared_));
+  std::ofstream(file + "-wal") << "changes";
+  EXPECT_THAT(failure_of(prepared_), HasSubstr(file + "-wal is new"));
+}
+
 TEST_F(PreparedLayerTest, IsRefusedWhenItsSourceHasChanged) {
   const std::string file = source("source.geojson", "aa");
   prepare(file, prepared_);
@@ -601,6 +611,22 @@ TEST_F(PreparedLayerTest, CutOffWhileItIsMappedReadsAsZerosAndIsNotWhole) {
       }
     }
   }
+}
+
+TEST_F(PreparedLayerTest, OneThatWasReadWhileItWasCutOffIsNotWholeWhenItGetsItsBytesBack) {
+  prepare(kMixed, prepared_);
+  const std::string copy = prepared_ + ".copy";
+  std::filesystem::copy_file(prepared_, copy);
+  const auto written = std::filesystem::last_write_time(prepared_);
+  const LoadedLayer opened = open_prepared_layer(prepared_);
+  std::filesystem::permissions(prepared_, std::filesystem::perms::owner_all);
+  std::filesystem::resize_file(prepared_, 0);
+  const std::span<const std::byte> bytes = opened.file->bytes();
+  EXPECT_EQ(bytes.back(), std::byte{0});
+  std::ifstream from(copy, std::ios::binary);
+  std::ofstream(prepared_, std::ios::binary) << from.rdbuf();
+  std::filesystem::last_write_time(prepared_, written);
+  EXPECT_FALSE(opened.file->is_whole());
 }
 
 /// Loads a source, taking over from a prepared file.

@@ -1,11 +1,13 @@
 #include "core/io/prepared/prepared_parts.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/io/file/mapped_file.h"
 #include "core/io/load/source_division.h"
 #include "core/io/prepared/join_parts.h"
 #include "core/io/prepared/open_layer.h"
@@ -111,6 +113,22 @@ TEST(PreparedPartsTest, OneThatIsCutOffOrReplacedIsDamagedWhenItIsLookedAt) {
   EXPECT_NE(parts[2]->layer(), nullptr);
   EXPECT_TRUE(parts[0]->is_damaged());
   EXPECT_FALSE(parts[2]->is_damaged());
+}
+
+TEST(PreparedPartsTest, OneIsNotDamagedIfThereWasNoDescriptorForIt) {
+  const TemporaryFolder folder;
+  const auto files = prepare(folder, write_squares(folder, "squares.gpkg", 20), "part", 3);
+  const LoadedLayer loaded = open_prepared_parts(files, {});
+  const PreparedPart& part = *loaded.parts->parts()[0];
+  rlimit files_before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &files_before), 0);
+  rlimit none = files_before;
+  none.rlim_cur = 0;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  EXPECT_THROW(part.layer(), MappingShortage);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files_before), 0);
+  EXPECT_FALSE(part.is_damaged());
+  EXPECT_NE(part.layer(), nullptr);
 }
 
 TEST(PreparedPartsTest, ThoseThatAreTheSameAreTakenOver) {

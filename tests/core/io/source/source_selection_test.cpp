@@ -199,6 +199,21 @@ TEST_F(SourceSelectionTest, AConditionIsOneCondition) {
   }
 }
 
+TEST_F(SourceSelectionTest, ANameInQuotesIsTheNameOfAColumn) {
+  const std::string copy = folder_.file("copy.sqlite");
+  write_source(copy, "SQLite", {{.type = wkbPolygon, .features = {square(1, "stone")}}});
+  for (const std::string& path : {town_, copy, kMixed}) {
+    for (const std::string where : {"\"colour\" > 1", "\"colour\" = 'red'", "text = \"stone\""}) {
+      EXPECT_THAT(failure_of(path, {.where = where}),
+                  AllOf(StartsWith(path), HasSubstr("cannot be asked where " + where + ": ")));
+    }
+  }
+  for (const std::string where : {"\"TEXT\" = 'stone'", "text || '\"x\"' = 'stone\"x\"'"}) {
+    const SourceSelection stone = {.layer = "houses", .where = where};
+    EXPECT_THAT(numbers(*load_layer(town_, {.selection = stone}).layer), ElementsAre(1, 3));
+  }
+}
+
 TEST_F(SourceSelectionTest, AConditionThatHoldsForNothingIsUnderstood) {
   EXPECT_EQ(load_layer(town_, {.selection = {.where = "number > 100"}}).report.loaded, 0u);
 }
