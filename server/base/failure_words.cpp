@@ -1,5 +1,8 @@
 #include "server/base/failure_words.h"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <new>
 #include <system_error>
 
@@ -17,6 +20,14 @@ std::string failure_words(const std::exception& error) {
 std::string failure_words(const std::exception& error, const std::string& file) {
   std::string words = failure_words(error);
   return words == error.what() ? words : file + ": " + words;
+}
+
+void log_failure(std::string_view what, const std::exception& error) noexcept {
+  try {
+    spdlog::error(fmt::format("{}: {}", what, failure_words(error)));
+  } catch (const std::exception&) {
+    // The message is lost; the thread is not.
+  }
 }
 
 }  // namespace trapeze

@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <string>
+#include <string_view>
 
 namespace trapeze {
 
@@ -11,5 +12,9 @@ namespace trapeze {
 std::string failure_words(const std::exception& error);
 /// The same for an operation on a file, which the message names.
 std::string failure_words(const std::exception& error, const std::string& file);
+
+/// Logs the message, after what was being done. For threads that must go on: if there is no memory
+/// for that either, nothing is logged.
+void log_failure(std::string_view what, const std::exception& error) noexcept;
 
 }  // namespace trapeze

@@ -31,7 +31,12 @@ class LruMap {
   Value& insert(const Key& key, Value value, std::size_t bytes) {
     assert(!by_key_.contains(key));
     entries_.push_front({key, std::move(value), bytes});
-    by_key_.emplace(key, entries_.begin());
+    try {
+      by_key_.emplace(key, entries_.begin());
+    } catch (...) {
+      entries_.pop_front();  // otherwise its bytes, which are not counted yet, would be subtracted
+      throw;
+    }
     bytes_ += bytes;
     while (bytes_ > budget_ && entries_.size() > 1) remove_last();
     return entries_.front().value;

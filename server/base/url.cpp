@@ -57,15 +57,17 @@ std::size_t end_of_host_name(std::string_view host) {
 
 std::optional<Target> split_target(std::string_view target) {
   constexpr std::string_view kScheme = "http://";
-  if (target.starts_with(kScheme)) {
-    const std::size_t path = target.find('/', kScheme.size());
-    if (path == std::string_view::npos) return std::nullopt;
-    target.remove_prefix(path);
+  std::string_view host;
+  if (to_lower(target.substr(0, kScheme.size())) == kScheme) {
+    target.remove_prefix(kScheme.size());
+    host = target.substr(0, target.find_first_of("/?"));
+    target.remove_prefix(host.size());
   }
-  if (!target.starts_with('/')) return std::nullopt;
-  const std::size_t mark = target.find('?');
-  if (mark == std::string_view::npos) return Target{target, {}};
-  return Target{target.substr(0, mark), target.substr(mark + 1)};
+  const std::size_t mark = std::min(target.find('?'), target.size());
+  std::string_view path = target.substr(0, mark);
+  if (path.empty() && !host.empty()) path = "/";
+  if (!path.starts_with('/')) return std::nullopt;
+  return Target{path, target.substr(std::min(mark + 1, target.size())), host};
 }
 
 std::optional<std::string> percent_decode(std::string_view text, Plus plus) {

@@ -12,11 +12,13 @@ namespace trapeze {
 
 /// Views into the target that was split, which must outlive it.
 struct Target {
-  std::string_view path;   // still encoded; begins with '/'
-  std::string_view query;  // still encoded, without '?'
+  std::string_view path;       // still encoded; begins with '/'
+  std::string_view query;      // still encoded, without '?'
+  std::string_view host = {};  // of the absolute form, with its port, unchecked; otherwise empty
 };
 
-/// Splits "/path?query", or the absolute form "http://host/path?query". Nothing for other text.
+/// Splits "/path?query", or the absolute form "http://host/path?query", in which a missing path is
+/// "/". Nothing for other text.
 std::optional<Target> split_target(std::string_view target);
 
 enum class Plus { literal, space };

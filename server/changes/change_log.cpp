@@ -4,9 +4,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <iterator>
 #include <map>
+#include <new>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -20,6 +22,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::size_t kMostSteps = 32;
+constexpr auto kPause = std::chrono::seconds(1);  // after memory has run out
 
 std::string text_of(const TileId& tile) {
   return fmt::format("{}/{}/{}", tile.z, tile.x, tile.y);
@@ -171,22 +174,33 @@ void ChangeLog::compare_steps() {
       step->is_taken = true;
       is_comparing_ = true;
     }
-    std::vector<ChangedLayer> layers = compare(*step);
-    {
-      const std::lock_guard lock(mutex_);
-      if (!options_.command.empty()) {
-        if (!untold_) untold_ = Sum{step->since, {}, {}};
-        untold_->generation = step->generation;
-        add(layers, options_.most_tiles, untold_->layers);
-      }
-      step->layers = std::move(layers);
-      step->is_compared = true;
+    // If memory runs out, which is likely while layers are reloaded, the step is compared again.
+    try {
+      take_changes(*step, compare(*step));
+    } catch (const std::bad_alloc& error) {
+      log_failure("changes cannot be determined at the moment", error);
+      std::unique_lock lock(mutex_);
       is_comparing_ = false;
-      step->before = nullptr;
-      step->after = nullptr;
+      wake_.wait_for(lock, kPause, [this] { return is_stopping_; });
+      step->is_taken = false;
     }
     wake_.notify_all();
   }
+}
+
+void ChangeLog::take_changes(Step& step, std::vector<ChangedLayer> layers) {
+  const std::lock_guard lock(mutex_);
+  if (!options_.command.empty()) {
+    Sum sum = untold_ ? *untold_ : Sum{step.since, {}, {}};
+    sum.generation = step.generation;
+    add(layers, options_.most_tiles, sum.layers);
+    untold_ = std::move(sum);
+  }
+  step.layers = std::move(layers);
+  step.is_compared = true;
+  is_comparing_ = false;
+  step.before = nullptr;
+  step.after = nullptr;
 }
 
 std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {

@@ -89,6 +89,7 @@ class ChangeLog {
   void stop();
   void compare_steps();
   std::vector<ChangedLayer> compare(const Step& step) const;
+  void take_changes(Step& step, std::vector<ChangedLayer> layers);
   void drop_oldest();
   void tell_command();
   void run_command(const Sum& changes);

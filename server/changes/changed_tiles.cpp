@@ -12,6 +12,7 @@
 #include "core/grid/for_each_in_parallel.h"
 #include "core/layer/layer_changes.h"
 #include "render/software/software_renderer.h"
+#include "render/text/fonts.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_plan.h"
 
@@ -90,7 +91,8 @@ class Comparison {
     const auto classes = TilePainter::new_class_cache();
     const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
     for (std::size_t i = 0; i < threads; ++i) {
-      painters_.emplace_back(std::make_unique<SoftwareRenderer>(), classes);
+      painters_.emplace_back(std::make_unique<SoftwareRenderer>(), classes,
+                             request.labels->usual_fonts(), request.labels);
     }
     for (const std::string& name : request.tile.layers) add_layer(name);
   }
@@ -186,11 +188,43 @@ class Comparison {
     return changes;
   }
 
+  /// All places of the labelled layers, if one of them has changed: labels are placed together, so
+  /// one that changes makes room for others, or takes it.
+  LayerChanges all_of_labelled(const TilePlan& before, const TilePlan& after) const {
+    const auto layer_in = [](const Dataset& dataset, const std::string& name) {
+      return &dataset.layers()[dataset.find(name).value()];
+    };
+    LayerChanges all;
+    bool is_any_changed = false;
+    for (const TilePlan* plan : {&before, &after}) {
+      for (const LabelledLayer& labelled : plan->labels) {
+        const ServedLayer& served = plan->dataset->layers_on_all_grids()[labelled.layer];
+        all.places.push_back({served.layer->bounds(), {}});
+        const std::string& name = served.config.name;
+        is_any_changed = is_any_changed ||
+                         layer_in(*before_, name)->revision != layer_in(*after_, name)->revision;
+      }
+    }
+    return is_any_changed ? all : LayerChanges();
+  }
+
+  /// How far labels reach out of their polygons, in cells. A label that is shown fits into its
+  /// polygon and its overhang; the rest is for its halo, and for letters that reach beyond it.
+  static double reach_of_labels(const TilePlan& plan) {
+    double pixels = 0;
+    for (const LabelledLayer& labelled : plan.labels) {
+      const LabelStyle& style = *labelled.style;
+      pixels = std::max(pixels, style.overhang + style.halo_width + style.size + 3);
+    }
+    return pixels * plan.scale * plan.view.cells_per_pixel;
+  }
+
   /// Layers visible in only one of the states have other zooms or opacities, which is not a change
   /// of the data.
   std::vector<TileId> candidates(int zoom, const TilePlan& before, const TilePlan& after) const {
     std::vector<std::pair<const LayerChanges*, TileDrawing>> drawings;  // usually the same in both
     const LayerChanges everywhere = all_of_reclassed(before, after);
+    const LayerChanges of_labels = all_of_labelled(before, after);
     std::map<const LayerChanges*, LayerChanges> of_pairs;
     for (const TilePlan* plan : {&before, &after}) {
       for (const LayerPaint& paint : plan->layers) {
@@ -210,13 +244,18 @@ class Comparison {
         if (std::ranges::find(drawings, each) == drawings.end()) drawings.push_back(each);
       }
     }
+    if (!of_labels.empty()) {
+      drawings.emplace_back(&of_labels,
+                            TileDrawing{zoom, after.pixel_level(), after.pixel_level(),
+                                        std::max(reach_of_labels(before), reach_of_labels(after))});
+    }
     std::vector<TileId> tiles;
     for (const auto& [changes, drawing] : drawings) {
       const auto more = tiles_with_changes(*changes, drawing, request_.most_tiles);
       tiles.insert(tiles.end(), more.begin(), more.end());
     }
     const auto has_lines = [](const LayerPaint& paint) { return paint.style.stroke.width > 0; };
-    if (std::ranges::any_of(before.layers, has_lines) ||
+    if (!of_labels.empty() || std::ranges::any_of(before.layers, has_lines) ||
         std::ranges::any_of(after.layers, has_lines)) {
       add_across_the_antimeridian(tiles);
     }
@@ -226,7 +265,8 @@ class Comparison {
     return tiles;
   }
 
-  /// Adds the tiles at the other end of the world, since lines reach across the antimeridian.
+  /// Adds the tiles at the other end of the world, since lines and labels reach over
+  /// the antimeridian.
   static void add_across_the_antimeridian(std::vector<TileId>& tiles) {
     const std::size_t count = tiles.size();
     for (std::size_t i = 0; i < count; ++i) {

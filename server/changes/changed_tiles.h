@@ -13,6 +13,7 @@
 #include "server/base/result.h"
 #include "server/base/zoom_range.h"
 #include "server/data/dataset.h"
+#include "server/labels/label_book.h"
 #include "server/tiles/tile_request.h"
 
 namespace trapeze {
@@ -38,6 +39,8 @@ struct ChangeRequest {
   Certainty certainty = Certainty::fingerprints;
   /// For one zoom: if more tiles changed, none is listed from that zoom on.
   std::size_t most_tiles = 1'000'000;
+  /// Draws the labels of the style, unless only candidates are listed.
+  std::shared_ptr<LabelBook> labels = std::make_shared<LabelBook>();
 };
 
 struct ChangedTiles {

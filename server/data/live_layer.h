@@ -32,6 +32,9 @@ class LiveLayer {
   /// std::exception if that cannot be determined; the next call tries again.
   std::optional<ServedLayer> next();
 
+  /// The last state that begin() or next() returned.
+  const ServedLayer& now() const { return served_; }
+
   /// Whether so much has changed that the layer should be read in full again.
   bool is_worn() const { return is_worn_; }
 

@@ -82,7 +82,7 @@ WmsVersion version_of(const KeyValuePairs& pairs) {
   if (!version || version->empty()) {
     return pairs.has("SRS") && !pairs.has("CRS") ? WmsVersion::v1_1_1 : WmsVersion::v1_3_0;
   }
-  return *version < name_of(WmsVersion::v1_3_0) ? WmsVersion::v1_1_1 : WmsVersion::v1_3_0;
+  return *version < "1.3" ? WmsVersion::v1_1_1 : WmsVersion::v1_3_0;  // some clients send "1.3"
 }
 
 Result<WmsRequest> wms_capabilities_of(const KeyValuePairs& pairs) {

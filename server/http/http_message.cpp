@@ -31,6 +31,14 @@ HttpResponse problem_response(const Problem& problem, std::chrono::duration<doub
   return response;
 }
 
+void allow_every_origin(HttpResponse& response) {
+  response.headers.emplace_back("Access-Control-Allow-Origin", "*");
+  response.headers.emplace_back("Access-Control-Expose-Headers",
+                                "Content-Bbox, Content-Crs, ETag, OATiles-hint, Retry-After, "
+                                "Server-Timing, X-Cache, X-Tile-Cost");
+  response.headers.emplace_back("Timing-Allow-Origin", "*");
+}
+
 bool matches_entity_tag(std::string_view if_none_match, std::string_view entity_tag) {
   if (trimmed(if_none_match) == "*") return true;
   // Our own tags contain no comma, so splitting at commas can only break other tags.

@@ -18,7 +18,7 @@ namespace trapeze {
 struct HttpRequest {
   std::string method;
   std::string target;
-  std::string host;           // as sent, unchecked; empty if none was
+  std::string host;           // of the target or the header, unchecked; empty if none was sent
   std::string if_none_match;  // as sent; empty if none was
   std::string body = {};      // untrusted
   ClientAddress client = {};  // the peer, or the client that a trusted proxy reports
@@ -53,6 +53,9 @@ using Respond = std::function<void(HttpResponse)>;
 HttpResponse problem_response(const Problem& problem);
 /// The same with the given retry time, rounded up to seconds, at least one.
 HttpResponse problem_response(const Problem& problem, std::chrono::duration<double> retry_after);
+
+/// Lets scripts of pages from any origin read the response and the headers that are of use to them.
+void allow_every_origin(HttpResponse& response);
 
 /// Whether an If-None-Match header names `entity_tag` (weak comparison, as RFC 7232 requires).
 bool matches_entity_tag(std::string_view if_none_match, std::string_view entity_tag);

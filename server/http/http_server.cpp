@@ -16,6 +16,7 @@
 #include <ctime>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -25,6 +26,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/base/failure_words.h"
+#include "server/base/url.h"
 #include "server/http/response_head.h"
 
 namespace trapeze {
@@ -89,6 +92,14 @@ std::string list_of(const http::request<http::string_body>& message, beast::stri
   return list;
 }
 
+/// Whether the client lets the connection stay open after the response. Beast's keep_alive() reads
+/// only the first of several Connection headers.
+bool is_kept_alive(const http::request<http::string_body>& message) {
+  const std::string list = list_of(message, "Connection");
+  http::token_list options{list};
+  return !options.exists("close") && (message.version() >= 11 || options.exists("keep-alive"));
+}
+
 /// The size of request line and headers, as received except for white space.
 std::size_t header_bytes(const http::request<http::string_body>& message) {
   constexpr std::size_t kAroundLine = 13;  // " ", " HTTP/1.1", "\r\n"... and the empty line
@@ -102,6 +113,19 @@ std::chrono::milliseconds round_for(const HttpServerOptions& options) {
   const auto shortest =
       std::min({options.idle_timeout, options.read_timeout, options.write_timeout});
   return std::clamp<std::chrono::milliseconds>(shortest / 8, kShortestRound, kLongestRound);
+}
+
+/// Runs until there is nothing left to do. If memory runs out in a handler, it ends what the
+/// handler was for: a connection is closed, as nothing else holds it.
+void run_handlers(net::io_context& io) {
+  while (true) {
+    try {
+      io.run();
+      return;
+    } catch (const std::exception& error) {
+      log_failure("a connection is closed", error);
+    }
+  }
 }
 
 tcp::endpoint endpoint_of(const HttpServerOptions& options) {
@@ -234,6 +258,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   bool is_late() const { return deadline_.load() < Clock::now(); }
 
   void read();
+  /// Some clients send an empty line behind a body (RFC 9112, section 2.2).
+  void skip_empty_lines();
   void await_first_byte();
   void read_request();
   /// Takes all of the request except its body. Fields that a client sends behind a chunked body
@@ -266,6 +292,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   void watch_for_disconnection();
   void on_readable_while_watching();
   void stop_watching();
+  /// Sends a response that does not come from the handler.
+  void send_own(HttpResponse response);
   void send(HttpResponse response);
   void write();
   void on_written(const ErrorCode& error);
@@ -312,7 +340,7 @@ void HttpServer::Connection::refuse(const Problem& problem) {
   net::dispatch(socket_.get_executor(), [self = shared_from_this(), problem] {
     self->request_.client = self->peer_;
     self->begin_ = Clock::now();
-    self->send(problem_response(problem, kRefusalPause));
+    self->send_own(problem_response(problem, kRefusalPause));
   });
 }
 
@@ -333,7 +361,18 @@ void HttpServer::Connection::end_if_late() {
   });
 }
 
+void HttpServer::Connection::skip_empty_lines() {
+  static constexpr std::string_view kEmptyLine = "\r\n";
+  const auto begins_with_one = [this] {
+    const auto bytes = buffer_.data();
+    return std::string_view(static_cast<const char*>(bytes.data()), bytes.size())
+        .starts_with(kEmptyLine);
+  };
+  while (begins_with_one()) buffer_.consume(kEmptyLine.size());
+}
+
 void HttpServer::Connection::read() {
+  skip_empty_lines();
   if (state_.is_draining() && buffer_.size() == 0) return close_gently();
   parser_.emplace();
   parser_->header_limit(state_.options().header_limit);
@@ -349,6 +388,9 @@ void HttpServer::Connection::await_first_byte() {
   socket_.async_read_some(buffer_.prepare(kFirstRead),
                           [self = shared_from_this()](const ErrorCode& error, std::size_t bytes) {
                             self->buffer_.commit(bytes);
+                            self->skip_empty_lines();
+                            if (!error && self->buffer_.size() == 0)
+                              return self->await_first_byte();
                             if (!error) return self->read_request();
                             self->is_reading_ = false;
                             if (error == net::error::eof) self->close_gently();
@@ -376,9 +418,9 @@ void HttpServer::Connection::read_request() {
 std::uint64_t HttpServer::Connection::body_limit() const {
   const HttpServerOptions& options = state_.options();
   const auto& header = parser_->get();
-  const auto target = header.target();
+  const auto target = split_target(view_of(header.target()));
   const bool is_long = !options.long_body_path.empty() && header.method() == http::verb::post &&
-                       target.substr(0, target.find('?')) == options.long_body_path;
+                       target && target->path == options.long_body_path;
   return is_long ? options.long_body_limit : options.body_limit;
 }
 
@@ -396,7 +438,7 @@ void HttpServer::Connection::refuse_unread(const Problem& problem) {
   is_reading_ = false;
   begin_ = Clock::now();
   keep_alive_ = false;
-  send(problem_response(problem));
+  send_own(problem_response(problem));
 }
 
 void HttpServer::Connection::leave_room() {
@@ -446,7 +488,7 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
   } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     problem = header_too_long();
   }
-  send(problem_response(problem));
+  send_own(problem_response(problem));
 }
 
 bool HttpServer::Connection::is_request_line_too_long() const {
@@ -472,17 +514,20 @@ void HttpServer::Connection::take_header() {
   request_ = {std::string(view_of(message.method_string())),
               std::string(view_of(message.target())),
               text(http::field::host),
-              text(http::field::if_none_match),
+              list_of(message, "If-None-Match"),
               {},
               client_of(message),
               std::make_shared<Disconnection>(),
               list_of(message, "Accept-Encoding"),
               text(http::field::content_type),
               text(http::field::content_encoding)};
+  // The host of an absolute target replaces that of the header (RFC 9112, section 3.2.2).
+  const auto target = split_target(request_.target);
+  if (target && !target->host.empty()) request_.host = target->host;
   referer_ = text(http::field::referer);
   user_agent_ = text(http::field::user_agent);
   version_ = message.version();
-  keep_alive_ = message.keep_alive();
+  keep_alive_ = is_kept_alive(message);
 }
 
 void HttpServer::Connection::forget_header() {
@@ -510,7 +555,7 @@ std::optional<Problem> HttpServer::Connection::problem_of_header() const {
 void HttpServer::Connection::handle(std::string body) {
   request_.body = std::move(body);
   if (request_.target.size() > state_.options().target_limit) {
-    return send(problem_response(target_too_long()));
+    return send_own(problem_response(target_too_long()));
   }
   // The pair releases the connection before the state that the connection refers to.
   auto held = std::pair(state_.shared_from_this(), shared_from_this());
@@ -525,7 +570,7 @@ void HttpServer::Connection::handle(std::string body) {
     });
   } catch (const std::exception& error) {
     spdlog::error(fmt::format("{} {}: {}", request_.method, request_.target, error.what()));
-    send(problem_response({500, "The request could not be answered."}));
+    send_own(problem_response({500, "The request could not be answered."}));
     return;
   }
   if (!is_answered_ && request_.disconnection->is_awaited()) watch_for_disconnection();
@@ -565,6 +610,11 @@ ClientAddress HttpServer::Connection::client_of(
   if (!is_trusted_) return peer_;
   return client_behind(peer_, list_of(message, "X-Forwarded-For"),
                        state_.options().trusted_proxies);
+}
+
+void HttpServer::Connection::send_own(HttpResponse response) {
+  if (state_.options().is_for_every_origin) allow_every_origin(response);
+  send(std::move(response));
 }
 
 void HttpServer::Connection::send(HttpResponse response) {
@@ -671,14 +721,14 @@ void HttpServer::State::run() {
   std::vector<std::thread> threads;
   try {
     for (std::size_t i = 1; i < io_threads_.size(); ++i) {
-      threads.emplace_back([&io = io_threads_[i]->io] { io.run(); });
+      threads.emplace_back([&io = io_threads_[i]->io] { run_handlers(io); });
     }
   } catch (const std::system_error&) {
     stop_threads();
     for (std::thread& thread : threads) thread.join();
     throw;
   }
-  io_threads_.front()->io.run();
+  run_handlers(io_threads_.front()->io);
   for (std::thread& thread : threads) thread.join();
   const std::lock_guard lock(mutex_);
   has_run_ = true;
@@ -695,7 +745,12 @@ void HttpServer::State::on_accepted(const ErrorCode& error, Socket socket) {
   if (is_draining_) return;
   if (!error) {
     next_thread_ = (next_thread_ + 1) % io_threads_.size();
-    admit(std::move(socket));
+    // If memory runs out, the connection is closed, and others are accepted nevertheless.
+    try {
+      admit(std::move(socket));
+    } catch (const std::exception& failure) {
+      log_failure("a connection is closed", failure);
+    }
     begin_rounds();
     return accept();
   }
@@ -722,10 +777,15 @@ void HttpServer::State::begin_rounds() {
 }
 
 void HttpServer::State::make_round() {
-  const auto connections = alive_connections();
-  has_rounds_ = !connections.empty();
+  // If memory runs out, the next round checks again.
+  try {
+    const auto connections = alive_connections();
+    has_rounds_ = !connections.empty();
+    for (const auto& connection : connections) connection->end_if_late();
+  } catch (const std::bad_alloc&) {
+    has_rounds_ = true;
+  }
   if (!has_rounds_) return;
-  for (const auto& connection : connections) connection->end_if_late();
   round_timer_.expires_after(round_);
   round_timer_.async_wait([this](const ErrorCode& cancelled) {
     if (!cancelled) make_round();
@@ -735,6 +795,7 @@ void HttpServer::State::make_round() {
 std::vector<std::shared_ptr<HttpServer::Connection>> HttpServer::State::alive_connections() const {
   std::vector<std::shared_ptr<Connection>> connections;
   const std::lock_guard lock(mutex_);
+  connections.reserve(connections_.size());  // otherwise one could be destroyed under the lock
   for (Connection* connection : connections_) {
     if (auto alive = connection->weak_from_this().lock()) connections.push_back(std::move(alive));
   }
@@ -868,10 +929,10 @@ void HttpServer::State::stop_on_signals() {
 void HttpServer::State::wait_for_signal() {
   signals_.async_wait([this](const ErrorCode& error, int signal) {
     if (error) return;
+    wait_for_signal();  // first: memory may run out below, and the next signal tries again
     spdlog::info(fmt::format("{}: {}", signal == SIGINT ? "SIGINT" : "SIGTERM",
                              is_draining_ ? "stopping at once" : "finishing requests in progress"));
     stop();
-    wait_for_signal();
   });
 }
 
@@ -884,8 +945,8 @@ void HttpServer::State::act_on_hangup(std::function<void()> act) {
 void HttpServer::State::wait_for_hangup() {
   hangups_.async_wait([this](const ErrorCode& error, int) {
     if (error) return;
-    on_hangup_();
     wait_for_hangup();
+    on_hangup_();
   });
 }
 

@@ -45,6 +45,9 @@ struct HttpServerOptions {
   std::chrono::milliseconds drain_timeout =
       defaults::kDrainTimeout;                // after that, for pending requests
   std::vector<AddressRange> trusted_proxies;  // whose X-Forwarded-For is believed
+  // Whether scripts of any origin may read responses that do not come from the handler, such as
+  // 413, see allow_every_origin().
+  bool is_for_every_origin = false;
 };
 
 /// Answers a request by calling `respond` exactly once, within this call or later, from any thread.

@@ -29,6 +29,16 @@ bool is_ideograph(std::string_view character) {
   return (c >= 0x3040 && c < 0x3100) || (c >= 0x3400 && c < 0xa000) || (c >= 0xac00 && c < 0xd7a4);
 }
 
+/// Combining marks, as of decomposed kana, and variation selectors, as in the names of Japanese
+/// places: they are part of the character before them.
+bool is_mark(std::string_view character) {
+  const std::u32string one = characters_of_line(character, 1);
+  if (one.empty()) return false;
+  const char32_t c = one.front();
+  return (c >= 0x300 && c < 0x370) || (c >= 0x302a && c < 0x3030) || c == 0x3099 || c == 0x309a ||
+         (c >= 0xfe00 && c < 0xfe10) || (c >= 0xe0100 && c < 0xe01f0);
+}
+
 std::vector<Chunk> chunks_of(std::string_view text) {
   std::vector<Chunk> chunks;
   bool may_join = false;
@@ -43,14 +53,16 @@ std::vector<Chunk> chunks_of(std::string_view text) {
       after_space = true;
       continue;
     }
+    const bool is_continued = !chunks.empty() && !after_space && is_mark(character);
     const bool stands_alone = is_ideograph(character);
-    if (may_join && !stands_alone) {
+    if (is_continued || (may_join && !stands_alone)) {
       Chunk& last = chunks.back();
       last.text = text.substr(static_cast<std::size_t>(last.text.data() - text.data()),
                               last.text.size() + bytes);
     } else {
       chunks.push_back({character, after_space});
     }
+    if (is_continued) continue;
     after_space = false;
     may_join = !(character == "-" || character == "/" || character == "," || stands_alone);
   }

@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "server/base/failure_words.h"
+
 namespace trapeze {
 namespace {
 
@@ -52,7 +54,7 @@ void DocumentWorker::work() {
     try {
       order->callback(answer(*order));
     } catch (const std::exception& error) {
-      spdlog::error(fmt::format("{}: {}", order->key, error.what()));
+      log_failure(order->key, error);
     }
   }
 }

@@ -101,8 +101,9 @@ LineWriter::~LineWriter() {
 void LineWriter::write(std::string line) {
   line += '\n';
   const std::lock_guard lock(mutex_);
-  waiting_bytes_ += line.size();
+  const std::size_t bytes = line.size();
   queue_.push_back({std::move(line), file_});
+  waiting_bytes_ += bytes;
   while (waiting_bytes_ > kMostWaitingBytes) {
     waiting_bytes_ -= queue_.front().text.size();
     queue_.pop_front();
@@ -135,9 +136,14 @@ void LineWriter::work() {
       waiting_bytes_ -= line.text.size();
       is_writing_ = true;
     }
-    if (put(line)) {
-      tell_what_is_lost();
-    } else {
+    bool is_written = false;
+    try {
+      is_written = put(line);
+      if (is_written) tell_what_is_lost();
+    } catch (const std::exception&) {
+      // Memory has run out: at worst a line is lost, and is counted.
+    }
+    if (!is_written) {
       const std::lock_guard lock(mutex_);
       ++lost_;
     }

@@ -115,7 +115,7 @@ void Reloader::follow() {
       if (!wait_for_a_reason()) return;
       load_again();
     } catch (const std::exception& error) {
-      spdlog::error(fmt::format("looking after the layers: {}", failure_words(error)));
+      log_failure("looking after the layers", error);
       is_loading_ = false;
     }
   }
@@ -172,26 +172,25 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
   const auto before = data_.get();
   std::shared_ptr<const Dataset> loaded =
       Dataset::load(layers, before.get(), &to_read_, read_named_tables(values));
-  begin_live(std::move(live), loaded);
+  begin_live(live, loaded);
   publish(std::move(loaded));
+  live_ = std::move(live);  // only now: they must be those of the dataset that is served
+  if (live_.empty()) note_of_databases("");  // no database is queried any more
   metrics_.count_load(true);
   spdlog::info(
       fmt::format("ready: {} layers, generation {}", layers.size(), data_.get()->generation()));
   if (changes_ != nullptr && before != nullptr) changes_->note(before, data_.get());
 }
 
-void Reloader::begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dataset>& loaded) {
-  if (!live.empty()) {
-    std::vector<ServedLayer> layers = loaded->layers_on_all_grids();
-    loaded = nullptr;
-    auto next = live.begin();
-    for (ServedLayer& layer : layers) {
-      if (!layer.config.live_query.empty()) layer = (next++)->begin(std::move(layer));
-    }
-    loaded = std::make_shared<const Dataset>(std::move(layers));
+void Reloader::begin_live(std::vector<LiveLayer>& live, std::shared_ptr<const Dataset>& loaded) {
+  if (live.empty()) return;
+  std::vector<ServedLayer> layers = loaded->layers_on_all_grids();
+  loaded = nullptr;
+  auto next = live.begin();
+  for (ServedLayer& layer : layers) {
+    if (!layer.config.live_query.empty()) layer = (next++)->begin(std::move(layer));
   }
-  live_ = std::move(live);
-  if (live_.empty()) note_of_databases("");  // no database is queried any more
+  loaded = std::make_shared<const Dataset>(std::move(layers));
 }
 
 bool Reloader::follow_live() {
@@ -205,8 +204,10 @@ bool Reloader::follow_live() {
     if (layer.config.live_query.empty()) continue;
     try {
       const Asking asking(*this, layer.config.name);
-      if (auto next = live->next()) {
-        layer = *std::move(next);
+      live->next();
+      // Not what next() returns: an earlier state may not have been published, for lack of memory.
+      if (live->now().revision != layer.revision) {
+        layer = live->now();
         has_changed = true;
       }
     } catch (const std::exception& error) {

@@ -101,7 +101,7 @@ class Reloader {
   bool wait_for_a_reason();
   bool has_settled_change();
   void publish(std::shared_ptr<const Dataset> loaded);
-  void begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dataset>& loaded);
+  static void begin_live(std::vector<LiveLayer>& live, std::shared_ptr<const Dataset>& loaded);
   /// Applies changes from databases. Returns false if a layer has to be read in full again.
   bool follow_live();
   void note_of_databases(const std::string& problem);

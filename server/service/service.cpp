@@ -89,6 +89,7 @@ HttpServerOptions server_options(const Config& config) {
   options.drain_delay = milliseconds(config.server.drain_delay_ms);
   options.drain_timeout = milliseconds(config.server.drain_timeout_ms);
   options.trusted_proxies = config.server.trusted_proxies;
+  options.is_for_every_origin = true;
   return options;
 }
 

@@ -104,14 +104,6 @@ HttpResponse not_ready(const Json& state) {
   return response;
 }
 
-void allow_every_origin(HttpResponse& response) {
-  response.headers.emplace_back("Access-Control-Allow-Origin", "*");
-  response.headers.emplace_back("Access-Control-Expose-Headers",
-                                "Content-Bbox, Content-Crs, ETag, OATiles-hint, Retry-After, "
-                                "Server-Timing, X-Cache, X-Tile-Cost");
-  response.headers.emplace_back("Timing-Allow-Origin", "*");
-}
-
 HttpResponse answer_options(std::string_view path) {
   const std::string methods = methods_of(path);
   HttpResponse response;

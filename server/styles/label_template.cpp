@@ -23,8 +23,9 @@ std::string words_of(const Value& value, const std::optional<NumberFormat>& form
           return std::string(each);
         } else {
           const auto number = static_cast<double>(each);
+          if (std::isnan(number)) return {};
           if (format && std::isfinite(number)) return formatted(number, *format);
-          return fmt::format("{}", each);
+          return fmt::format("{}", each + Type());  // without the sign of negative zero
         }
       },
       value);

@@ -19,7 +19,7 @@ constexpr std::uint64_t kSidesPerOutlineEdge = 4;
 constexpr std::uint64_t kSidesPerDashedEdge = 8;
 constexpr std::uint64_t kSidesPerRoundedTrapezoid = 40;  // of its corners, sides of new trapezoids
 constexpr std::uint64_t kSidesPerGrownTrapezoid = 120;   // to search its surroundings, which
-constexpr std::uint64_t kSidesPerGrownPixel = 40;        // grow by this per pixel of the width
+constexpr std::uint64_t kSidesPerGrownPixel = 4;         // grow by this per pixel of the width
 constexpr std::uint64_t kSidesPerPartSeenThrough = 64;
 constexpr std::uint64_t kSidesPerProjectedTrapezoid = 2;  // in plate carree
 constexpr std::uint64_t kSidesPerMarkedTrapezoid = 32;    // for debug=mesh and similar

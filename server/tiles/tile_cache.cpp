@@ -48,7 +48,12 @@ class TileCache::Shard {
     const bool is_back = ghosts_.contains(hash);
     Queue& queue = is_back ? main_ : small_;
     queue.push_back({std::string(key), hash, tile, bytes, 0});
-    entries_.emplace(queue.back().key, std::prev(queue.end()));
+    try {
+      entries_.emplace(queue.back().key, std::prev(queue.end()));
+    } catch (...) {
+      queue.pop_back();  // otherwise its bytes, which are not counted yet, would be subtracted
+      throw;
+    }
     bytes_ += bytes;
     if (!is_back) small_bytes_ += bytes;
   }
@@ -82,13 +87,14 @@ class TileCache::Shard {
   // Evicts the entry, or moves it to the main queue if it was requested.
   void evict_from_small() {
     Entry& oldest = small_.front();
-    small_bytes_ -= oldest.bytes;
     if (oldest.hits > 0) {
+      small_bytes_ -= oldest.bytes;
       oldest.hits = 0;
       main_.splice(main_.end(), small_, small_.begin());
       return;
     }
-    remember(oldest.hash);
+    remember(oldest.hash);  // first, as memory may run out
+    small_bytes_ -= oldest.bytes;
     drop(small_);
   }
 
@@ -110,8 +116,9 @@ class TileCache::Shard {
   }
 
   void remember(std::uint64_t hash) {
-    if (!ghosts_.insert(hash).second) return;
+    if (ghosts_.contains(hash)) return;
     ghost_queue_.push_back(hash);
+    ghosts_.insert(hash);
     while (ghost_queue_.size() > std::max<std::size_t>(entries_.size(), 16)) {
       ghosts_.erase(ghost_queue_.front());
       ghost_queue_.pop_front();

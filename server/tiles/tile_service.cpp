@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <exception>
 #include <functional>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "server/base/failure_words.h"
 #include "server/base/heap.h"
 #include "server/tiles/tile_painter.h"
 
@@ -22,7 +24,7 @@ void attempt(const Action& tell, std::string_view failure = "a tile cannot be an
   try {
     tell();
   } catch (const std::exception& error) {
-    spdlog::error(fmt::format("{}: {}", failure, error.what()));
+    log_failure(failure, error);
   }
 }
 
@@ -111,7 +113,7 @@ void TileService::place_labels() {
         "labels cannot be placed");
     lock.lock();
     is_placing_ = false;
-    queue_placed(flight);
+    attempt([&] { queue_placed(flight); }, "tiles wait for their labels");
     wake_.notify_all();
   }
 }
@@ -122,11 +124,14 @@ bool TileService::is_placing() const {
 }
 
 void TileService::queue_placed(const std::shared_ptr<Flight>& placed) {
-  std::erase_if(awaiting_labels_, [&](const std::shared_ptr<Flight>& flight) {
-    if (flight != placed && !has_labels(flight->order.plan)) return false;
-    queue_of(flight->order.cost).push_back(flight);
-    return true;
-  });
+  for (auto flight = awaiting_labels_.begin(); flight != awaiting_labels_.end();) {
+    const auto next = std::next(flight);
+    if (*flight == placed || has_labels((*flight)->order.plan)) {
+      Queue& queue = queue_of((*flight)->order.cost);
+      queue.splice(queue.end(), awaiting_labels_, flight);
+    }
+    flight = next;
+  }
 }
 
 std::shared_ptr<TileService::Flight> TileService::take_late() {
@@ -371,7 +376,7 @@ void TileService::draw(TilePainter& painter, const Flights& flights) {
   try {
     answer(painter, flights);
   } catch (const std::exception& error) {
-    spdlog::error(fmt::format("tiles cannot be answered: {}", error.what()));
+    log_failure("tiles cannot be answered", error);
     for (const auto& flight : flights) land(flight, {});
   }
   const Cost cost = flights.front()->order.cost;

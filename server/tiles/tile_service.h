@@ -15,6 +15,7 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -190,7 +191,7 @@ class TileService {
     std::exception_ptr failure = nullptr;  // the first failure
   };
   using Flights = std::vector<std::shared_ptr<Flight>>;
-  using Queue = std::deque<std::shared_ptr<Flight>>;
+  using Queue = std::list<std::shared_ptr<Flight>>;  // moving between them needs no memory
 
   bool is_quick_to_identify(const TilePlan& plan, std::uint64_t cost) const;
   std::string identify(const TilePlan& plan);

@@ -49,10 +49,18 @@ TEST(UrlTest, SplitsTargetsInBothForms) {
   ASSERT_TRUE(absolute);
   EXPECT_EQ(absolute->path, "/catalog");
   EXPECT_EQ(absolute->query, "");
+  EXPECT_EQ(absolute->host, "host:80");
+  EXPECT_EQ(origin->host, "");
+  const auto without_path = split_target("HTTP://host?a=/");
+  ASSERT_TRUE(without_path);
+  EXPECT_EQ(without_path->path, "/");
+  EXPECT_EQ(without_path->query, "a=/");
+  EXPECT_EQ(without_path->host, "host");
+  EXPECT_EQ(split_target("http://host").value().path, "/");
 }
 
 TEST(UrlTest, RefusesTargetsWithoutAPath) {
-  for (const char* target : {"", "*", "tiles/a.json", "http://host", "ftp://host/x"}) {
+  for (const char* target : {"", "*", "tiles/a.json", "http://", "http://?a", "ftp://host/x"}) {
     EXPECT_FALSE(split_target(target)) << target;
   }
 }

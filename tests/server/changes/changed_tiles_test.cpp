@@ -14,7 +14,9 @@
 
 #include "render/software/software_renderer.h"
 #include "server/changes/tile_list.h"
+#include "server/config/load_config.h"
 #include "server/tiles/tile_painter.h"
+#include "tests/core/io/temporary_folder.h"
 #include "tests/server/service/sample_site.h"
 #include "tests/server/tiles/edited_land.h"
 
@@ -136,6 +138,27 @@ TEST(ChangedTiles, OfTheSameDataAreNone) {
   for (const Certainty certainty : kCertaintyNames.values()) {
     EXPECT_THAT(changed("", certainty, before, after), ::testing::IsEmpty());
   }
+}
+
+TEST(ChangedTiles, WithOtherLabelsAreListed) {
+  const auto land_with = [](const std::string& name) {
+    const TemporaryFolder folder;
+    const std::string file = folder.write(
+        "land.geojson",
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":")" +
+            name + R"("},"geometry":{"type":"Polygon","coordinates":)" +
+            R"([[[0.1,0.1],[80,0.1],[80,60],[0.1,60],[0.1,0.1]]]}}]})");
+    return Dataset::load(layers_of_files({file}));
+  };
+  const auto before = land_with("Aland");
+  const auto after = land_with("Bland");
+  const std::string style = "fill=ddd&label=name";
+  ChangeRequest request = request_of(style, Certainty::bytes);
+  request.zooms = {1, 2};
+  request.labels = testing::label_book();
+  const auto tiles = changed_tiles(request, before, after)->tiles;
+  EXPECT_THAT(set_of(tiles), ::testing::Contains(std::tuple(1, 1u, 0u)));
+  EXPECT_THAT(set_of(tiles), ::testing::Contains(std::tuple(2, 2u, 1u)));
 }
 
 TEST(ChangedTiles, EndAtTheZoomWithTooMany) {

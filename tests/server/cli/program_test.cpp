@@ -11,7 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <regex>
@@ -23,6 +23,7 @@
 #include "render/picture/png.h"
 #include "server/config/config.h"
 #include "server/http/viewer_files.h"
+#include "tests/core/io/temporary_folder.h"
 #include "tests/sanitized.h"
 #include "tests/server/http/raw_client.h"
 #include "tests/server/service/sample_site.h"
@@ -39,21 +40,19 @@ using ::testing::Not;
 using testing::RawClient;
 using ::testing::StartsWith;
 
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
+/// In a folder of this process: the tests of several builds may run at the same time.
 std::string scratch_path(const std::string& name) {
-  return ::testing::TempDir() + "/" +
-         ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + name;
+  static const TemporaryFolder folder;
+  return folder.file(std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
+                     "_" + name);
 }
 
-/// A run of the program with its output redirected to a file. Killed if it is still running when
-/// the test ends.
+/// A run of the program with its output redirected to a file of its own. Killed if it is still
+/// running when the test ends.
 class Program {
  public:
-  explicit Program(std::vector<std::string> arguments) : output_(scratch_path("output.txt")) {
+  explicit Program(std::vector<std::string> arguments)
+      : output_(scratch_path("output_" + std::to_string(++runs_) + ".txt")) {
     arguments.insert(arguments.begin(), TRAPEZE_PROGRAM);
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -83,12 +82,13 @@ class Program {
 
   void send_signal(int signal) const { kill(pid_, signal); }
 
-  /// The exit status; empty if the program does not exit within 20 seconds.
+  /// The exit status, or the number of the signal that killed it, negative; empty if the program
+  /// does not exit within 20 seconds.
   std::optional<int> wait() {
     for (int i = 0; i < 2000 && !status_; ++i) {
       int status = 0;
       if (waitpid(pid_, &status, WNOHANG) == pid_) {
-        status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        status_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
       } else {
         std::this_thread::sleep_for(10ms);
       }
@@ -111,6 +111,7 @@ class Program {
   }
 
  private:
+  static inline int runs_ = 0;
   const std::string output_;
   pid_t pid_ = 0;
   std::optional<int> status_;
@@ -151,17 +152,16 @@ void write_island(const std::string& path, int vertices) {
 }
 
 /// A polygon whose graph takes seconds to build, in a folder of its own.
-std::string write_large_polygon(const std::string& folder) {
+std::string write_large_polygon(const std::string& folder, int teeth) {
   std::filesystem::create_directories(folder);
   const std::string path = folder + "/comb.geojson";
   std::ofstream file(path);
   file << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},)"
        << R"("geometry":{"type":"Polygon","coordinates":[[[0,-1])";
-  constexpr int kTeeth = 400'000;
-  for (int i = 0; i <= kTeeth; ++i) {
+  for (int i = 0; i <= teeth; ++i) {
     file << ",[" << i * 1e-4 << "," << (i % 2 == 0 ? 0 : (i * 7919 % 1000) * 1e-3) << "]";
   }
-  file << ",[" << kTeeth * 1e-4 << ",-1],[0,-1]]]}}]}";
+  file << ",[" << teeth * 1e-4 << ",-1],[0,-1]]]}}]}";
   return path;
 }
 
@@ -175,7 +175,7 @@ std::vector<std::string> names_in(const std::string& folder) {
 
 TEST(ProgramTest, InterruptedCommandsLeaveNothingBehind) {
   const std::string folder = scratch_path("interrupted");
-  const std::string source = write_large_polygon(folder);
+  const std::string source = write_large_polygon(folder, 400'000);
   for (const std::string output : {"out.gpkg", "out.fgb", "out.geojson"}) {
     for (const int signal : {SIGINT, SIGTERM}) {
       Program program({"export", source, "--zoom", "20", "--output", folder + "/" + output});
@@ -189,11 +189,14 @@ TEST(ProgramTest, InterruptedCommandsLeaveNothingBehind) {
       EXPECT_THAT(names_in(folder), ::testing::ElementsAre("comb.geojson"));
     }
   }
+  // Its file is written within moments after seconds of building, so it may be done first.
+  write_large_polygon(folder, 200'000);
   Program program({"prepare", source, "--output", folder});
-  std::this_thread::sleep_for(200ms);
+  for (int i = 0; i < 3000 && names_in(folder).size() < 2; ++i) std::this_thread::sleep_for(10ms);
+  EXPECT_EQ(names_in(folder).size(), 2u) << "it writes beside the output";
   program.send_signal(SIGTERM);
-  EXPECT_EQ(program.wait(), 128 + SIGTERM);
-  EXPECT_THAT(names_in(folder), ::testing::ElementsAre("comb.geojson"));
+  EXPECT_THAT(program.wait().value_or(-1), ::testing::AnyOf(128 + SIGTERM, 0));
+  EXPECT_THAT(names_in(folder), ::testing::Each(Not(HasSubstr(".tmp."))));
   std::filesystem::remove_all(folder);
 }
 
@@ -830,6 +833,38 @@ TEST(ProgramTest, MoreSkippedFeaturesThanAllowedEndEveryCommandThatLoads) {
   }
   std::filesystem::remove_all(folder);
   std::filesystem::remove(map);
+}
+
+TEST(ProgramTest, ListsTheTilesThatDifferInEveryFormat) {
+  const auto diff = [](const std::string& later, const std::vector<std::string>& more, int status) {
+    std::vector<std::string> arguments = {"diff", fixture("west.geojson"), later, "--zooms", "0-1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), status) << program.output();
+    return program.output();
+  };
+  const std::string later = fixture("rings.geojson");
+  for (const char* certainty : {"bytes", "candidates", "fingerprints"}) {
+    EXPECT_THAT(diff(later, {"--certainty", certainty}, 0),
+                EndsWith("\n0/0/0\n1/0/0\n1/1/0\n1/0/1\n1/1/1\n"))
+        << certainty;
+  }
+  EXPECT_THAT(diff(later, {"--format", "json"}, 0),
+              EndsWith("\n[\"0/0/0\",\"1/0/0\",\"1/1/0\",\"1/0/1\",\"1/1/1\"]\n"));
+  const std::string said = diff(later, {"--format", "geojson"}, 0);
+  const auto collection = nlohmann::json::parse(said.substr(said.find("{\"type\"")));
+  ASSERT_EQ(collection["features"].size(), 5u);
+  const auto& east = collection["features"][2];
+  EXPECT_EQ(east["properties"], nlohmann::json({{"z", 1}, {"x", 1}, {"y", 0}}));
+  const auto& corner = east["geometry"]["coordinates"][0][2];
+  EXPECT_NEAR(corner[0].get<double>(), 180, 1e-6);
+  EXPECT_NEAR(corner[1].get<double>(), 85.0511288, 1e-6);
+  EXPECT_THAT(diff(fixture("west.geojson"), {}, 0), Not(HasSubstr("0/0/0\n"))) << "nothing differs";
+  EXPECT_THAT(diff(fixture("nosuch.geojson"), {}, 1), HasSubstr("nosuch.geojson: no such file"));
+  EXPECT_THAT(diff(later, {"--format", "xml"}, 2),
+              HasSubstr("--format takes geojson, json or text"));
+  EXPECT_THAT(diff(later, {"--certainty", "x"}, 2),
+              HasSubstr("--certainty takes bytes, candidates"));
 }
 
 TEST(ProgramTest, ExportsThePolygonsOfAZoomAndSaysWhatIsLeft) {

@@ -194,10 +194,9 @@ TEST_F(WmsTest, LegendsAreAsLargeAsTheCapabilitiesSay) {
 
 TEST_F(WmsTest, VersionsAreNegotiated) {
   const std::pair<const char*, const char*> versions[] = {
-      {"", "version=\"1.3.0\""},      {"1.3.0", "version=\"1.3.0\""},
-      {"1.1.1", "version=\"1.1.1\""}, {"1.1.0", "version=\"1.1.1\""},
-      {"0.9", "version=\"1.1.1\""},   {"1.2.5", "version=\"1.1.1\""},
-      {"9.9.9", "version=\"1.3.0\""}};
+      {"", "version=\"1.3.0\""},      {"1.3.0", "version=\"1.3.0\""}, {"1.3", "version=\"1.3.0\""},
+      {"1.1.1", "version=\"1.1.1\""}, {"1.1.0", "version=\"1.1.1\""}, {"0.9", "version=\"1.1.1\""},
+      {"1.2.5", "version=\"1.1.1\""}, {"9.9.9", "version=\"1.3.0\""}};
   for (const auto& [asked, answered] : versions) {
     const auto response =
         sample_.get(fmt::format("/wms?service=WMS&request=GetCapabilities&version={}", asked));

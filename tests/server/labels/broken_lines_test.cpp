@@ -51,6 +51,12 @@ TEST_F(BrokenLinesTest, IdeographsAreBrokenAnywhere) {
   EXPECT_THAT(broken.lines, ElementsAre("中华人民", "共和国"));
 }
 
+TEST_F(BrokenLinesTest, MarksStayWithTheirLetters) {
+  EXPECT_THAT(broken_lines("か\u3099き\u3099", 0.5, fonts_).lines,
+              ElementsAre("か\u3099", "き\u3099"));
+  EXPECT_THAT(broken_lines("葛\U000E0100飾", 0.5, fonts_).lines, ElementsAre("葛\U000E0100", "飾"));
+}
+
 TEST_F(BrokenLinesTest, NoTextHasNoWidth) {
   EXPECT_EQ(broken_lines("", 10, fonts_).width, 0);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ class LabelTemplateTest : public ::testing::Test {
                      std::vector<Value>{"  Saint\n\tLucia ", "LCA", std::int64_t{183'629}, 0.25});
     features_.append(2, std::vector<Value>{Value(), "X", Value(), Value()});
     features_.append(3, std::vector<Value>{" ", Value(), Value(), Value()});
+    features_.append(4, std::vector<Value>{Value(), Value(), Value(), std::nan("")});
+    features_.append(5, std::vector<Value>{Value(), Value(), Value(), -0.0});
   }
 
   std::string text(const std::string& written, std::uint32_t row,
@@ -43,6 +46,8 @@ TEST_F(LabelTemplateTest, NullSaysNothing) {
   EXPECT_EQ(text("{name} ({A3})", 1), "(X)");
   EXPECT_EQ(text("{name}: {people} people", 1), "");
   EXPECT_EQ(text("{name}!", 2), "") << "white space is nothing";
+  EXPECT_EQ(text("share", 3), "") << "not a number";
+  EXPECT_EQ(text("share", 4), "0");
 }
 
 TEST_F(LabelTemplateTest, SaysInALanguageWhatIsKnownInIt) {
