@@ -20,6 +20,7 @@
 
 #include "bench/measure/figures.h"
 #include "bench/measure/run_program.h"
+#include "bench/server/trapeze_server.h"
 #include "core/io/load/load_layer.h"
 #include "core/io/prepared/prepared_layer.h"
 #include "core/io/source/source_stamp.h"
@@ -34,7 +35,7 @@ struct Options {
   int blocks = 4000;
   int rounds = 5;
   double changed = 0.001;
-  std::string json = "reuse.json";
+  std::string json = "out/bench/reuse.json";
 };
 
 /// Blocks of 6 x 4 parcels, with streets between them: borders share vertices, three on each side
@@ -210,14 +211,12 @@ int run(int argc, char** argv) {
   app.add_option("--json", options.json, "Where the figures go")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   GDALAllRegister();
-  const std::string folder = (std::filesystem::temp_directory_path() / "trapeze-reuse").string();
-  std::filesystem::create_directories(folder);
+  const ScratchFolder folder;
   std::vector<Figure> figures;
   for (const std::string& layer : options.layers) {
-    figures.push_back(measure(options, layer, folder));
+    figures.push_back(measure(options, layer, folder.path()));
     print_line(figures.back());
   }
-  std::filesystem::remove_all(folder);
   write_figures(figures, command_line(argc, argv), options.json);
   return 0;
 }

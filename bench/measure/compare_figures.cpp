@@ -43,7 +43,7 @@ Json read_json(const std::string& path) {
 /// The values of a figure that are compared, if present.
 constexpr const char* kKept[] = {"tiles_per_second", "cpu_ms_per_tile",      "p50_ms",
                                  "p99_ms",           "cached tiles, cpu us", "304, cpu us",
-                                 "seconds to ready"};
+                                 "first, cpu us",    "seconds to ready"};
 
 void add_own(const Json& json, Figures& figures) {
   const Json& machine = json.at("machine");
@@ -114,9 +114,11 @@ double worsening(const std::string& name, double before, double now) {
 
 void compare(const Figures& stored, const Figures& now, double factor) {
   std::size_t compared = 0;
+  std::size_t without = 0;
   std::vector<std::pair<double, std::string>> worse;
   for (const auto& [name, value] : now.values) {
     const auto before = stored.values.find(name);
+    if (before == stored.values.end()) ++without;
     if (before == stored.values.end() || before->second <= 0 || value <= 0) continue;
     ++compared;
     const double times = worsening(name, before->second, value);
@@ -124,6 +126,7 @@ void compare(const Figures& stored, const Figures& now, double factor) {
   }
   std::printf("%zu figures against those of %s, commit %s, on %s\n", compared, stored.time.c_str(),
               stored.commit.c_str(), stored.machine.c_str());
+  if (without > 0) std::printf("%zu figures are compared with nothing: none are stored\n", without);
   if (!now.machine.empty() && now.machine != stored.machine) {
     std::printf("this is another machine: %s\n", now.machine.c_str());
   }

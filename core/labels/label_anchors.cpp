@@ -126,6 +126,8 @@ std::vector<Part> parts_of(const Rings& rings) {
 struct SearchArea {
   double left = 0;  // drawn narrower, as the sides of a Boundary
   double top = 0;
+  double middle_x = 0;  // of the bounding box
+  double middle_y = 0;
   double side = 0;  // of the squares into which it is divided at first
   int columns = 0;
   int rows = 0;
@@ -135,6 +137,8 @@ struct SearchArea {
       : left(box.min_x / LabelAnchors::kSqueeze), top(static_cast<double>(box.min_y)) {
     const double width = box.max_x / LabelAnchors::kSqueeze - left;
     const double height = box.max_y - top;
+    middle_x = left + width / 2;
+    middle_y = top + height / 2;
     side = std::max({std::min(width, height), std::max(width, height) / 32, 1.0});
     columns = static_cast<int>(std::ceil(width / side));
     rows = static_cast<int>(std::ceil(height / side));
@@ -394,17 +398,20 @@ class Prober {
 Square deepest(Boundary& boundary, const SearchArea& area, Prober& prober) {
   prober.begin(boundary);
   const std::size_t all = prober.side_count();
-  std::vector<Square> open;  // a heap
+  constexpr double kRounding = 1e-3;  // cells: deeper by less is as deep
+  std::vector<Square> open;           // a heap
   const auto is_worse = [](const Square& a, const Square& b) { return a.most < b.most; };
   Square best;
   best.to_large = -std::numeric_limits<double>::infinity();
   int probes = 0;
   const auto take = [&](const Square& square) {
     ++probes;
-    if (square.depth() > best.depth()) best = square;
+    if (square.depth() > best.depth() + kRounding) best = square;
     open.push_back(square);
     std::ranges::push_heap(open, is_worse);
   };
+  // Where many points are equally deep, as in boxes, the middle is the first of them.
+  take(prober.look(area.middle_x, area.middle_y, 0, 0, all));
   for (int column = 0; column < area.columns; ++column) {
     for (int row = 0; row < area.rows; ++row) {
       take(prober.look(area.left + (column + 0.5) * area.side, area.top + (row + 0.5) * area.side,
@@ -491,10 +498,12 @@ class Finder {
       const double depth =
           std::min(found.to_large - moved, LabelAnchors::kSmallRings * (found.to_small - moved));
       if (depth <= 0) continue;
+      // Where rings touch themselves, lobes may cancel out, and holes exceed what is left.
+      const double size = std::max(part.area, 0.0);
       anchors.push_back({row,
                          {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
                          static_cast<float>(depth),
-                         static_cast<float>(part.area)});
+                         static_cast<float>(size)});
       if (parts == LabelParts::largest) return;
     }
   }

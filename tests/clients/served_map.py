@@ -77,6 +77,11 @@ def served_map(config_text=CONFIG, write_data=lambda folder: None):
             base = f"http://127.0.0.1:{port}/"
             wait_until_ready(base, server)
             yield base, folder
-        finally:
-            server.terminate()
-            server.wait(30)
+        except BaseException:
+            server.kill()
+            raise
+        server.terminate()
+        status = server.wait(30)
+        if status != 0:
+            with open(os.path.join(folder, "log"), encoding="utf-8", errors="replace") as log:
+                raise RuntimeError(f"trapeze serve ended with {status}:\n{log.read()[-4000:]}")

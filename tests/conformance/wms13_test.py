@@ -621,4 +621,5 @@ def _(wms):
 
 
 with served_layers() as address:
-    sys.exit(suite.run(Service(address)))
+    status = suite.run(Service(address))
+sys.exit(status)

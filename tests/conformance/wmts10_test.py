@@ -464,4 +464,5 @@ def _(wmts):
 
 
 with served_layers() as address:
-    sys.exit(suite.run(Service(address)))
+    status = suite.run(Service(address))
+sys.exit(status)

@@ -25,8 +25,9 @@ def shown_commands():
 
 
 def help_of(program, names):
+    """Nothing if there is no such command: the program then shows the help of the command above it."""
     got = subprocess.run([program, *names, "--help"], capture_output=True, text=True, check=False)
-    return got.stdout if got.returncode == 0 else None
+    return got.stdout if f"Usage: trapeze {' '.join(names)} " in got.stdout else None
 
 
 def mistakes_of(program, words, known):

@@ -87,13 +87,17 @@ TEST(LabelAnchorsTest, OfBoxesIsInTheMiddle) {
   ASSERT_EQ(wide.size(), 1u);
   EXPECT_EQ(wide[0].row, 7u);
   EXPECT_NEAR(wide[0].depth, 500, 500 * LabelAnchors::kDepthShare);
-  EXPECT_NEAR(wide[0].place.y, 500, 500 * LabelAnchors::kDepthShare);
+  EXPECT_EQ(wide[0].place, (Point{6'000, 500}));
   EXPECT_EQ(wide[0].area, 12e6F);
   // Where a name has less width than it needs for its height, the width counts.
   const auto high = anchors_of_feature(0, rings_of({box(0, 0, 600, 6'000)}));
   ASSERT_EQ(high.size(), 1u);
   EXPECT_NEAR(high[0].depth, 100, 100 * LabelAnchors::kDepthShare);
-  EXPECT_NEAR(high[0].place.x, 300, 300 * LabelAnchors::kDepthShare);
+  EXPECT_EQ(high[0].place, (Point{300, 3'000}));
+  const auto square = anchors_of_feature(0, rings_of({box(100'003, 7, 103'010, 3'013)}));
+  ASSERT_EQ(square.size(), 1u);
+  EXPECT_NEAR(square[0].place.x, 101'506.5, 1);
+  EXPECT_NEAR(square[0].place.y, 1'510, 1);
 }
 
 TEST(LabelAnchorsTest, AHoleIsAvoidedAndItsIslandIsAPart) {
