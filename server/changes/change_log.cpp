@@ -227,6 +227,7 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
       request.zooms = options_.zooms;
       request.certainty = Certainty::candidates;
       request.most_tiles = options_.most_tiles;
+      request.labels = options_.labels;
       try {
         auto found = changed_tiles(request, step.before, step.after);
         layer.is_everything = !found;

@@ -18,6 +18,7 @@
 
 #include "server/changes/changed_tiles.h"
 #include "server/data/dataset.h"
+#include "server/labels/label_book.h"
 
 namespace trapeze {
 
@@ -43,6 +44,8 @@ class ChangeLog {
     /// Changes made while it runs are combined and passed on when it has finished. Empty: no
     /// command.
     std::string command;
+    /// Places the labels of the layers' own styles. Without fonts, labels are not considered.
+    std::shared_ptr<LabelBook> labels = std::make_shared<LabelBook>();
   };
 
   explicit ChangeLog(Options options);

@@ -1,7 +1,10 @@
 #include "server/changes/changed_tiles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -10,6 +13,7 @@
 #include <vector>
 
 #include "core/grid/for_each_in_parallel.h"
+#include "core/grid/grid.h"
 #include "core/layer/layer_changes.h"
 #include "render/software/software_renderer.h"
 #include "render/text/fonts.h"
@@ -188,35 +192,51 @@ class Comparison {
     return changes;
   }
 
-  /// All places of the labelled layers, if one of them has changed: labels are placed together, so
-  /// one that changes makes room for others, or takes it.
-  LayerChanges all_of_labelled(const TilePlan& before, const TilePlan& after) const {
-    const auto layer_in = [](const Dataset& dataset, const std::string& name) {
-      return &dataset.layers()[dataset.find(name).value()];
-    };
-    LayerChanges all;
-    bool is_any_changed = false;
-    for (const TilePlan* plan : {&before, &after}) {
-      for (const LabelledLayer& labelled : plan->labels) {
-        const ServedLayer& served = plan->dataset->layers_on_all_grids()[labelled.layer];
-        all.places.push_back({served.layer->bounds(), {}});
-        const std::string& name = served.config.name;
-        is_any_changed = is_any_changed ||
-                         layer_in(*before_, name)->revision != layer_in(*after_, name)->revision;
-      }
-    }
-    return is_any_changed ? all : LayerChanges();
+  /// Whether the labels of a plan may differ between the states. They are placed together, so one
+  /// that changes makes room for others, or takes it.
+  bool may_labels_differ(const TilePlan& plan) const {
+    return std::ranges::any_of(plan.labels, [&](const LabelledLayer& labelled) {
+      const std::string& name = plan.dataset->layers_on_all_grids()[labelled.layer].config.name;
+      return before_->layers()[before_->find(name).value()].revision !=
+             after_->layers()[after_->find(name).value()].revision;
+    });
   }
 
-  /// How far labels reach out of their polygons, in cells. A label that is shown fits into its
-  /// polygon and its overhang; the rest is for its halo, and for letters that reach beyond it.
-  static double reach_of_labels(const TilePlan& plan) {
-    double pixels = 0;
-    for (const LabelledLayer& labelled : plan.labels) {
-      const LabelStyle& style = *labelled.style;
-      pixels = std::max(pixels, style.overhang + style.halo_width + style.size + 3);
+  /// Appends the tiles of the labels that are shown in one of the states only.
+  void add_tiles_of_labels(int zoom, const TilePlan& before, const TilePlan& after,
+                           std::vector<TileId>& tiles) const {
+    if (!may_labels_differ(before) && !may_labels_differ(after)) return;
+    const auto labels_of = [&](const TilePlan& plan) {
+      auto labels =
+          request_.labels->all_at_scale_of({*plan.dataset, plan.labels, plan.view, plan.scale});
+      std::ranges::sort(labels);
+      return labels;
+    };
+    std::vector<PlacedLabel> differing;
+    std::ranges::set_symmetric_difference(labels_of(before), labels_of(after),
+                                          std::back_inserter(differing));
+    const std::int64_t count = std::int64_t{1} << zoom;
+    const double side = static_cast<double>(kGridSize) / static_cast<double>(count);
+    const auto number_at = [side](double cells) {
+      return static_cast<std::int64_t>(std::floor((cells - kGridMin) / side));
+    };
+    const std::size_t most = tiles.size() + request_.most_tiles;
+    for (const PlacedLabel& label : differing) {
+      const std::int64_t first_row =
+          std::max<std::int64_t>(number_at(label.y - label.half_height), 0);
+      const std::int64_t last_row = std::min(number_at(label.y + label.half_height), count - 1);
+      for (std::int64_t row = first_row; row <= last_row; ++row) {
+        const std::int64_t last_column = number_at(label.x + label.half_width);
+        for (std::int64_t column = number_at(label.x - label.half_width); column <= last_column;
+             ++column) {
+          if (tiles.size() >= most) throw std::length_error("too many tiles with other labels");
+          const std::int64_t around =
+              (column % count + count) % count;  // labels reach over the seam
+          tiles.push_back(
+              {zoom, static_cast<std::uint32_t>(around), static_cast<std::uint32_t>(row)});
+        }
+      }
     }
-    return pixels * plan.scale * plan.view.cells_per_pixel;
   }
 
   /// Layers visible in only one of the states have other zooms or opacities, which is not a change
@@ -224,7 +244,6 @@ class Comparison {
   std::vector<TileId> candidates(int zoom, const TilePlan& before, const TilePlan& after) const {
     std::vector<std::pair<const LayerChanges*, TileDrawing>> drawings;  // usually the same in both
     const LayerChanges everywhere = all_of_reclassed(before, after);
-    const LayerChanges of_labels = all_of_labelled(before, after);
     std::map<const LayerChanges*, LayerChanges> of_pairs;
     for (const TilePlan* plan : {&before, &after}) {
       for (const LayerPaint& paint : plan->layers) {
@@ -244,29 +263,24 @@ class Comparison {
         if (std::ranges::find(drawings, each) == drawings.end()) drawings.push_back(each);
       }
     }
-    if (!of_labels.empty()) {
-      drawings.emplace_back(&of_labels,
-                            TileDrawing{zoom, after.pixel_level(), after.pixel_level(),
-                                        std::max(reach_of_labels(before), reach_of_labels(after))});
-    }
     std::vector<TileId> tiles;
     for (const auto& [changes, drawing] : drawings) {
       const auto more = tiles_with_changes(*changes, drawing, request_.most_tiles);
       tiles.insert(tiles.end(), more.begin(), more.end());
     }
     const auto has_lines = [](const LayerPaint& paint) { return paint.style.stroke.width > 0; };
-    if (!of_labels.empty() || std::ranges::any_of(before.layers, has_lines) ||
+    if (std::ranges::any_of(before.layers, has_lines) ||
         std::ranges::any_of(after.layers, has_lines)) {
       add_across_the_antimeridian(tiles);
     }
+    add_tiles_of_labels(zoom, before, after, tiles);
     const auto place = [](const TileId& tile) { return std::pair(tile.y, tile.x); };
     std::ranges::sort(tiles, {}, place);
     tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
     return tiles;
   }
 
-  /// Adds the tiles at the other end of the world, since lines and labels reach over
-  /// the antimeridian.
+  /// Adds the tiles at the other end of the world, since lines reach across the antimeridian.
   static void add_across_the_antimeridian(std::vector<TileId>& tiles) {
     const std::size_t count = tiles.size();
     for (std::size_t i = 0; i < count; ++i) {

@@ -39,7 +39,7 @@ struct ChangeRequest {
   Certainty certainty = Certainty::fingerprints;
   /// For one zoom: if more tiles changed, none is listed from that zoom on.
   std::size_t most_tiles = 1'000'000;
-  /// Draws the labels of the style, unless only candidates are listed.
+  /// Places and draws the labels of the style. Without fonts, none are drawn.
   std::shared_ptr<LabelBook> labels = std::make_shared<LabelBook>();
 };
 

@@ -390,6 +390,28 @@ std::vector<DrawnLabel> LabelBook::find(const LabelledView& wanted) {
   return labels;
 }
 
+std::vector<PlacedLabel> LabelBook::all_at_scale_of(const LabelledView& wanted) {
+  std::vector<PlacedLabel> labels;
+  const double pixels_per_cell = pixels_per_cell_of(wanted);
+  const std::optional<int> step = LabelPlacement::step_of(pixels_per_cell);
+  if (wanted.layers.empty() || !step) return labels;
+  const auto placed = this->placed(wanted);
+  const double slack = slack_of(wanted.layers);
+  const std::span<const LabelCandidate> candidates = placed->placement.candidates();
+  for (std::uint32_t number = 0; number < candidates.size(); ++number) {
+    const Placed::Source& source = placed->sources[number];
+    const LabelledLayer& layer = wanted.layers[source.layer];
+    if (!layer.is_drawn || placed->placement.first_step_of(number) > *step) continue;
+    const FeatureTable& features =
+        wanted.dataset.layers_on_all_grids()[layer.layer].layer->features();
+    const LabelCandidate& candidate = candidates[number];
+    labels.push_back({candidate.x, candidate.y, (candidate.half_width + slack) / pixels_per_cell,
+                      (candidate.half_height + slack) / pixels_per_cell, source.layer,
+                      layer.style->text_of(features, source.row, *fonts_for(*layer.style))});
+  }
+  return labels;
+}
+
 bool LabelBook::is_any_from(const LabelledView& wanted) {
   if (wanted.layers.empty()) return false;
   const auto placed = this->placed(wanted);

@@ -8,6 +8,7 @@
 // thread's work in progress waits for it.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -71,6 +72,18 @@ struct DrawnLabel {
   int top = 0;
 };
 
+/// A label where it is placed on the plane, for comparing two states of a layer.
+struct PlacedLabel {
+  double x = 0;  // of its middle, in cells
+  double y = 0;
+  double half_width = 0;  // in cells at a certain scale; no ink is farther away
+  double half_height = 0;
+  std::uint32_t layer = 0;  // among the labelled layers
+  std::string text;
+
+  friend auto operator<=>(const PlacedLabel&, const PlacedLabel&) = default;
+};
+
 /// A picture, or a part of one, with its labels. `layers` are those of the plan, bottom first.
 struct LabelledView {
   const Dataset& dataset;
@@ -91,6 +104,9 @@ class LabelBook {
 
   /// The labels that reach into the picture, in drawing order.
   std::vector<DrawnLabel> find(const LabelledView& wanted);
+
+  /// All labels, in any order, that are shown in pictures of that scale, wherever they are.
+  std::vector<PlacedLabel> all_at_scale_of(const LabelledView& wanted);
 
   /// Whether any label may reach into the picture, or into one of the same place at a larger scale.
   bool is_any_from(const LabelledView& wanted);

@@ -163,6 +163,7 @@ Service::Service(const Config& config, LayerSource source)
     ChangeLog::Options what;
     what.zooms = *zooms;
     what.command = config.changes.command;
+    what.labels = drawing.labels;
     changes_ = std::make_unique<ChangeLog>(std::move(what));
   } else if (!config.changes.command.empty()) {
     spdlog::warn("changes.command is never run: it needs changes.zooms");

@@ -41,6 +41,7 @@ ChangeRequest request_of(const std::string& style, Certainty certainty) {
   request.tile.style = testing::style_of(style);
   request.zooms = kServedZooms;
   request.certainty = certainty;
+  request.labels = testing::label_book();
   return request;
 }
 
@@ -84,7 +85,8 @@ class Drawn {
   }
 
   std::string style_;
-  TilePainter painter_{std::make_unique<SoftwareRenderer>()};
+  TilePainter painter_{std::make_unique<SoftwareRenderer>(), TilePainter::new_class_cache(),
+                       testing::label_book()->usual_fonts(), testing::label_book()};
 };
 
 bool holds_all(const Tiles& all, const Tiles& some) {
@@ -128,6 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Styles, ChangedTilesTest,
                                            "fill-opacity=0.5&small=keep&simplify=2",
                                            "filter=kind='wood'&simplify=0",
                                            "highlight=3,50,60&pattern=dots",
+                                           "label={kind} {value}&label-size=8&label-overhang=9",
                                            "smooth=40&stroke=black&simplify=2",
                                            "grow=2&stroke=black"));
 
@@ -155,7 +158,6 @@ TEST(ChangedTiles, WithOtherLabelsAreListed) {
   const std::string style = "fill=ddd&label=name";
   ChangeRequest request = request_of(style, Certainty::bytes);
   request.zooms = {1, 2};
-  request.labels = testing::label_book();
   const auto tiles = changed_tiles(request, before, after)->tiles;
   EXPECT_THAT(set_of(tiles), ::testing::Contains(std::tuple(1, 1u, 0u)));
   EXPECT_THAT(set_of(tiles), ::testing::Contains(std::tuple(2, 2u, 1u)));
