@@ -506,6 +506,8 @@ std::variant<std::shared_ptr<const Filter>, Filter::Mistake> Filter::parse(std::
     if (filter->text().size() > kMaxFilterLength) {
       return Mistake{fmt::format("its numbers make it longer than {} bytes", kMaxFilterLength)};
     }
+    // It may be nested deeper: AND beside OR has parentheses in it, and NOT is a level of its own.
+    Parser(filter->text()).parse();
     return filter;
   } catch (const ParseError& error) {
     return Mistake{error.what};

@@ -92,43 +92,53 @@ std::vector<double> pretty_breaks(int classes, const ValueSpread& spread) {
   return breaks;
 }
 
-/// Numbers in ascending groups, with prefix sums that give the cost of a class of consecutive
+/// Numbers in ascending groups, with running sums that give the cost of a class of consecutive
 /// groups.
 class JenksGroups {
  public:
   explicit JenksGroups(const ValueSpread& spread) {
     const std::size_t count = std::min(spread.values.size(), kMostJenksValues);
-    // To keep precision for numbers that are close to each other and far from 0.
-    const long double origin = spread.values[spread.values.size() / 2];
+    const auto begin_of = [&](std::size_t group) { return group * spread.values.size() / count; };
     for (std::size_t group = 0; group < count; ++group) {
-      const std::size_t begin = group * spread.values.size() / count;
-      const std::size_t end = (group + 1) * spread.values.size() / count;
-      first_.push_back(spread.values[begin]);
+      first_.push_back(spread.values[begin_of(group)]);
+    }
+    weights_.resize(count + 1);
+    sums_.resize(count + 1);
+    squares_.resize(count + 1);
+    // To keep precision for numbers that are close to each other and far from 0, or from a few
+    // others, such as -1e38 for "no data": sums grow from the middle towards both ends, so that
+    // those of a class contain no number that is further out.
+    const std::size_t middle = count / 2;
+    const long double origin = first_[middle];
+    const auto add = [&](std::size_t group, std::size_t from, std::size_t to, long double sign) {
       long double weight = 0;
       long double sum = 0;
-      for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t i = begin_of(group); i < begin_of(group + 1); ++i) {
         weight += spread.counts[i];
         sum += spread.counts[i] * (spread.values[i] - origin);
       }
-      weights_.push_back(weights_.back() + weight);
-      sums_.push_back(sums_.back() + sum);
-      squares_.push_back(squares_.back() + sum * (sum / weight));
-    }
+      weights_[to] = weights_[from] + sign * weight;
+      sums_[to] = sums_[from] + sign * sum;
+      squares_[to] = squares_[from] + sign * sum * (sum / weight);
+    };
+    for (std::size_t group = middle; group < count; ++group) add(group, group, group + 1, 1);
+    for (std::size_t group = middle; group-- > 0;) add(group, group + 1, group, -1);
   }
 
   std::size_t size() const { return first_.size(); }
   double first_value(std::size_t group) const { return first_[group]; }
   /// The sum of squared distances of the numbers in groups `begin` to `end` - 1 from their mean.
   long double cost(std::size_t begin, std::size_t end) const {
+    if (end - begin == 1) return 0;  // exactly, however large the numbers are
     const long double sum = sums_[end] - sums_[begin];
     return squares_[end] - squares_[begin] - sum * (sum / (weights_[end] - weights_[begin]));
   }
 
  private:
   std::vector<double> first_;
-  std::vector<long double> weights_{0};  // before each group
-  std::vector<long double> sums_{0};
-  std::vector<long double> squares_{0};
+  std::vector<long double> weights_;  // from the middle to the beginning of each group
+  std::vector<long double> sums_;
+  std::vector<long double> squares_;
 };
 
 /// Fisher's dynamic programming: the best divisions of each initial run of groups, with one more

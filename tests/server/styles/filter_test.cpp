@@ -137,6 +137,16 @@ TEST(FilterTest, TheTextReadsBackAsItself) {
   }
 }
 
+TEST(FilterTest, IsRefusedIfItsTextWouldBeNestedTooDeep) {
+  std::string filter = "a IS NOT NULL";
+  for (std::size_t i = 0; i < kMaxFilterDepth; ++i) {
+    filter = "a=2 OR b=1 AND (" + filter + ")";
+    const std::string text = canonical_filter(filter);
+    EXPECT_EQ(canonical_filter(text), text) << filter;
+  }
+  EXPECT_THAT(canonical_filter(filter), HasSubstr("deep"));
+}
+
 TEST(FilterTest, NumbersBeyondExactDoublesKeepTheirText) {
   // From 2^53 to 10^16 a whole double is written like an integer, and integers sort before doubles.
   const std::string text =

@@ -101,6 +101,18 @@ TEST(ClassBreaksTest, FindTheBestJenksClassesOfAll) {
   }
 }
 
+TEST(ClassBreaksTest, FindJenksClassesBesideANumberThatMeansNoData) {
+  const Numbers numbers = {10, 11, 12, 40, 41, 42, 90, 91, 92};
+  for (const double far : {1e20, 3.4e38, std::numeric_limits<double>::max()}) {
+    Numbers below = numbers;
+    below.push_back(-far);
+    EXPECT_THAT(breaks_of("jenks:4", below), ElementsAre(10, 40, 90)) << -far;
+    Numbers above = numbers;
+    above.push_back(far);
+    EXPECT_THAT(breaks_of("jenks:4", above), ElementsAre(40, 90, far)) << far;
+  }
+}
+
 TEST(ClassBreaksTest, PartManyNumbersByJenksAsWellAsEqualClassesAtLeast) {
   std::mt19937 random(11);
   std::lognormal_distribution<double> number(0, 1);
