@@ -426,6 +426,22 @@ struct LayerPatcher::State {
     return boxes;
   }
 
+  /// Appends the places of pairs of overlapping features of which only one is among these rows: in
+  /// styles that round corners or widen features, the other one may look different everywhere.
+  void append_pairs(std::span<const std::uint32_t> rows,
+                    std::vector<LayerChanges::Place>& places) const {
+    const std::unordered_set<std::uint32_t> among(rows.begin(), rows.end());
+    for (const std::uint32_t row : rows) {
+      for (const FeatureOverlap& pair : now->overlaps().of(row)) {
+        if (among.contains(pair.other)) continue;
+        const Box box = box_of_feature(now->contents(), row);
+        for (const Box& other : boxes_of_units(std::span(&pair.other, 1))) {
+          places.push_back({box, Lifespan(), false, other});
+        }
+      }
+    }
+  }
+
   /// Contents that are views of everything appended so far.
   std::unique_ptr<LayerContents> new_contents(Owners owners) const {
     auto contents = std::make_unique<LayerContents>();
@@ -668,6 +684,8 @@ LayerChanges LayerPatcher::apply(const Patch& patch) {
   const LayerContents& from = patch.features.contents();
   Patching patching(*state.now, patch, state.row_of_id);
   std::vector<Box> places = state.boxes_of_units(patching.replaced());
+  LayerChanges changes;
+  state.append_pairs(patching.replaced(), changes.places);
   patching.end_lives(places, state.most_motes);
   const Squares makeup = squares_of(patching.makeup());
   state.check_room(from, makeup);
@@ -681,7 +699,7 @@ LayerChanges LayerPatcher::apply(const Patch& patch) {
   ++state.patches;
   const std::vector<Box> fresh = state.boxes_of_units(patching.rows());
   places.insert(places.end(), fresh.begin(), fresh.end());
-  LayerChanges changes;
+  state.append_pairs(patching.rows(), changes.places);
   for (const Box& place : places) {
     if (!place.is_empty()) changes.places.push_back({place, Lifespan()});
   }

@@ -20,7 +20,8 @@ namespace trapeze {
 
 /// How certain it is that a listed tile has changed.
 enum class Certainty : std::uint8_t {
-  candidates,    // may have changed, in any style with the simplify of the requested one
+  candidates,    // may have changed, in any style with the simplify of the requested one that does
+                 // not reach farther
   fingerprints,  // the data it is drawn from has changed
   bytes,         // its bytes have changed, as found by drawing it
 };

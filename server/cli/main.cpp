@@ -139,8 +139,8 @@ the geometry or style it is drawn from has changed, so every tile with a changed
 listed. A few listed tiles may look the same, because the change is too small to be visible:
 --certainty bytes draws both versions and lists only those that differ. --certainty candidates
 does not examine single tiles: it lists those that may change in any style with the same
-simplify, except styles that select features by id and labels that --style does not set. Use it to
-purge caches of all styles.)";
+simplify, except styles that select features by id, labels that --style does not set, and wider
+outlines or more smooth or grow than it sets. Use it to purge caches of all styles.)";
 
 constexpr const char* kExportFooter = R"(
 Examples:

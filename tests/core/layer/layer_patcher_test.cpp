@@ -340,6 +340,25 @@ TEST(LayerPatcherTest, ChangesAreWhereSomethingLooksDifferent) {
   }
 }
 
+TEST(LayerPatcherTest, AFeatureThatIsNoLongerOverlappedMayLookDifferentEverywhere) {
+  LayerOptions options;
+  options.coverage = CoverageMode::off;
+  const auto square = [](std::int32_t from, std::int32_t to) {
+    Rings rings;
+    rings.add(std::vector<Point>{{from, from}, {to, from}, {to, to}, {from, to}});
+    return rings;
+  };
+  const Features features = {{1, square(0, 4000), "a"}, {2, square(3000, 5000), "b"}};
+  LayerPatcher patcher(*build_from(features, options));
+  const std::vector<std::int64_t> gone = {2};
+  const std::vector<std::int64_t> to_build = patcher.ids_to_build(gone, {}, 4);
+  ASSERT_EQ(to_build, gone);
+  const LayerChanges changes = patcher.apply({to_build, *build_from({}, options)});
+  Box others;
+  for (const LayerChanges::Place& place : changes.places) others.include(place.other);
+  EXPECT_EQ(others, (Box{0, 0, 4000, 4000}));
+}
+
 TEST(LayerPatcherTest, RefusesFeaturesOfOneIdAndOtherAttributes) {
   const Features twice = {{1, random_shape(1), "a"}, {1, random_shape(2), "b"}};
   EXPECT_THROW(LayerPatcher(*build_from(twice, {})), std::invalid_argument);
