@@ -312,7 +312,7 @@ constexpr std::array kParameters = {
     StyleParameter{.id = ParameterId::stroke,
                    .name = "stroke",
                    .type = Type::colour,
-                   .default_text = "no outline",
+                   .default_text = "no outline; black with stroke-width",
                    .description = "colour of the outline"},
     StyleParameter{
         .id = ParameterId::stroke_dasharray,
@@ -338,7 +338,7 @@ constexpr std::array kParameters = {
                    .name = "stroke-width",
                    .type = Type::number,
                    .max = 32,
-                   .default_text = "1 where a stroke is set",
+                   .default_text = "1 with stroke",
                    .description = "width of the outline, in pixels"},
     StyleParameter{
         .id = ParameterId::style,

@@ -911,8 +911,26 @@ void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_
   if (ranges.empty() || colour.a == 0) return;
   Lines& lines = lines_of(colour);
   std::vector<SideOf> in_common;
-  for_each_trapezoid(ranges, [&](std::uint32_t i) { add_sides_of(i, lines.sides, in_common); });
-  append_outer(in_common, lines.sides);
+  if (!has_growth()) {
+    for_each_trapezoid(ranges, [&](std::uint32_t i) { add_sides_of(i, lines.sides, in_common); });
+    append_outer(in_common, lines.sides);
+    return;
+  }
+  // Features that overlap others keep their shape. As whether those others are near depends on the
+  // picture, their edges must not: they are those that add_stack() adds, not moved ones.
+  std::vector<std::uint32_t> unmoved;
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    const std::uint32_t row = layer_->feature_of(i);
+    const bool is_moved = row == Layer::kNoFeature || layer_->overlaps().of(row).empty();
+    add_sides_of(i, is_moved ? lines.sides : unmoved, in_common);
+  });
+  append_outer(in_common, unmoved);
+  sort_and_part(unmoved);
+  const MeshView& mesh = layer_->mesh();
+  for (const std::uint32_t edge : unmoved) {
+    const MeshEdge& ends = mesh.edges[edge];
+    lines.seen.push_back({edge, mesh.vertices[ends.upper], mesh.vertices[ends.lower]});
+  }
 }
 
 // If the feature overlaps others, only some of its sides are edges of its outline: these go to
