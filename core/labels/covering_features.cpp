@@ -47,7 +47,7 @@ std::shared_ptr<const CoveringFeature> CoveringFeatures::find(std::uint32_t row)
   if (const auto found = recent_.find(row); found != recent_.end()) return found->second;
   const auto found = older_.find(row);
   if (found == older_.end()) return nullptr;
-  const auto feature = found->second;
+  auto feature = found->second;
   keep(row, feature);
   return feature;
 }
