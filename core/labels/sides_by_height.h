@@ -72,10 +72,6 @@ class SidesByHeight {
     }
   }
 
-  std::size_t memory() const {
-    return (begins_.capacity() + sides_.capacity()) * sizeof(std::uint32_t);
-  }
-
  private:
   /// How many rows of equal height to sort sides into. `heights` is the sum of their heights, each
   /// at most `height`. Where most sides are high, more rows would need much memory and save
