@@ -911,20 +911,18 @@ void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_
   if (ranges.empty() || colour.a == 0) return;
   Lines& lines = lines_of(colour);
   std::vector<SideOf> in_common;
-  if (!has_growth()) {
-    for_each_trapezoid(ranges, [&](std::uint32_t i) { add_sides_of(i, lines.sides, in_common); });
-    append_outer(in_common, lines.sides);
-    return;
-  }
-  // Features that overlap others keep their shape. As whether those others are near depends on the
-  // picture, their edges must not: they are those that add_stack() adds, not moved ones.
+  // Where others grow, features that overlap others keep their shape. As whether those others are
+  // near depends on the picture, their edges must not: they are those that add_stack() adds.
   std::vector<std::uint32_t> unmoved;
+  std::vector<std::uint32_t>& of_overlapping = has_growth() ? unmoved : lines.sides;
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    const std::uint32_t row = layer_->feature_of(i);
-    const bool is_moved = row == Layer::kNoFeature || layer_->overlaps().of(row).empty();
-    add_sides_of(i, is_moved ? lines.sides : unmoved, in_common);
+    const auto is_alone = [&](std::uint32_t row) {
+      return row == Layer::kNoFeature || layer_->overlaps().of(row).empty();
+    };
+    const bool may_move = !has_growth() || is_alone(layer_->feature_of(i));
+    add_sides_of(i, may_move ? lines.sides : of_overlapping, in_common);
   });
-  append_outer(in_common, unmoved);
+  append_outer(in_common, of_overlapping);
   sort_and_part(unmoved);
   const MeshView& mesh = layer_->mesh();
   for (const std::uint32_t edge : unmoved) {
