@@ -136,13 +136,18 @@ LayerSource layer_source(const ServeArguments& arguments, const Config& running)
   return {layers, arguments.config, [values] { return *values; }};
 }
 
-/// Blocks SIGHUP, also in threads started later, or lets a blocked one through to the calling
-/// thread.
-void hold_hangups(int how) {
-  sigset_t hangups;
-  sigemptyset(&hangups);
-  sigaddset(&hangups, SIGHUP);
-  pthread_sigmask(how, &hangups, nullptr);
+/// Blocks signals that must not get lost before something acts on them, also in threads started
+/// later, or lets blocked ones through to the calling thread.
+void hold_signals(int how) {
+  sigset_t held;
+  sigemptyset(&held);
+  // It would end the server; and systemd does not restart what it ends.
+  sigaddset(&held, SIGHUP);
+  // In a container: Linux discards signals to process 1 if nothing acts on them.
+  if (getpid() == 1) {
+    for (const int signal : {SIGINT, SIGTERM}) sigaddset(&held, signal);
+  }
+  pthread_sigmask(how, &held, nullptr);
 }
 
 [[noreturn]] void end_now(ServerLog& log) {
@@ -176,9 +181,7 @@ Config configure(const ServeArguments& arguments) {
 int run_serve(const ServeArguments& arguments) {
   // The server continues when the reader of its log exits.
   std::signal(SIGPIPE, SIG_IGN);
-  // Until something acts on it, SIGHUP would end the server; and systemd does not restart what it
-  // ends.
-  hold_hangups(SIG_BLOCK);
+  hold_signals(SIG_BLOCK);
   ServerLog log;
   const Config config = configure(arguments);
   if (!arguments.is_verbose) spdlog::set_level(spdlog::level::from_str(config.log.level));
@@ -187,7 +190,7 @@ int run_serve(const ServeArguments& arguments) {
   check_files_exist(config.layers);
   Service service(config, layer_source(arguments, config));
   service.act_on_signals();
-  hold_hangups(SIG_UNBLOCK);
+  hold_signals(SIG_UNBLOCK);
   service.run();
   if (!service.finish()) end_now(log);
   spdlog::info("stopped");

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/grid/box_segment.h"
 #include "core/grid/plate_carree.h"
 #include "core/grid/web_mercator.h"
 #include "core/mesh/mesh_index.h"
@@ -867,11 +868,8 @@ bool LayerDrawing::take_edge(std::uint32_t edge, Point from, Point to, const Box
   const MeshView& mesh = layer_->mesh();
   const OutlineView& outline = layer_->outline();
   line.ink = ink.of(outline.loop_size(edge), from.y);
-  Box around;
-  around.include(from);
-  around.include(to);
   const bool has_frame = view_.projection != Projection::plane;
-  if (line.ink < kLeastInk || !around.intersects(box)) return false;
+  if (line.ink < kLeastInk || !meets(from, to, box)) return false;
   if (has_frame && is_on_frame(from, to)) return false;
   if (!style().stroke.is_dashed()) return true;
   const Point upper = mesh.vertices[mesh.edges[edge].upper];

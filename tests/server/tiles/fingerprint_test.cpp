@@ -13,6 +13,7 @@
 #include "server/base/content_hash.h"
 #include "server/config/load_config.h"
 #include "server/tiles/tile_painter.h"
+#include "tests/core/io/temporary_folder.h"
 #include "tests/server/service/sample_site.h"
 #include "tests/server/tiles/edited_land.h"
 
@@ -151,6 +152,20 @@ TEST_P(FingerprintTest, EmptyTilesAndFullOnesAreAllAlike) {
   ASSERT_EQ(full.hint, TileHint::full);
   EXPECT_EQ(fingerprint(dataset, "land/13/4201/4021.png?fill=red"), full.fingerprint);
   EXPECT_NE(fingerprint(dataset, "land/13/4201/4021.png?fill=blue"), full.fingerprint);
+}
+
+TEST_P(FingerprintTest, LinesThatPassByDoNotMatter) {
+  const testing::TemporaryFolder folder;
+  const std::string triangle = folder.write("land.geojson", R"({"type": "Polygon", "coordinates":
+      [[[0, 0], [40, 0], [0, 40], [0, 0]]]})");
+  const auto dataset = Dataset::load(layers_of_files({triangle}));
+  for (const char* tile :
+       {"land/8/131/124", "land/8/155/100"}) {  // within, and beyond the long side
+    const std::string target = std::string(tile) + ".png";
+    EXPECT_EQ(fingerprint(dataset, target + "?stroke=black"), fingerprint(dataset, target));
+  }
+  const std::string on_side = "land/8/142/113.png";
+  EXPECT_NE(fingerprint(dataset, on_side + "?stroke=black"), fingerprint(dataset, on_side));
 }
 
 TEST_P(FingerprintTest, OtherLayersAndNamesDoNotMatter) {
