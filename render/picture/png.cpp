@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <csetjmp>
-#include <cstring>
+#include <cstdint>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -44,18 +44,49 @@ StoredPalette pack_palette(const RunPicture& picture) {
   return stored;
 }
 
-// Packs indices of one byte each into fewer bits, with the first pixel in the highest bits of a
-// byte.
-void pack_bits(std::span<const std::uint8_t> indices, int bits, std::uint8_t* row) {
-  const std::size_t per_byte = 8 / static_cast<std::size_t>(bits);
-  for (std::size_t i = 0; i < indices.size(); i += per_byte) {
-    unsigned byte = 0;
-    for (std::size_t k = i; k < i + per_byte; ++k) {
-      byte = byte << bits | (k < indices.size() ? indices[k] : 0u);
-    }
-    *row++ = static_cast<std::uint8_t>(byte);
+/// Packs runs of indices into bytes, with the first pixel in the highest bits of a byte. Takes time
+/// in proportion to the runs, not to the pixels.
+class BitPacker {
+ public:
+  /// Appends to `runs`; `bits` per pixel: 1, 2 or 4.
+  BitPacker(int bits, std::vector<PixelRun>& runs) : bits_(bits), runs_(runs) {}
+
+  void add(std::uint32_t pixels, unsigned index) {
+    for (; pixels > 0 && filled_ > 0; --pixels) add_pixel(index);
+    const std::uint32_t per_byte = 8 / static_cast<std::uint32_t>(bits_);
+    const unsigned index_everywhere = index * (0xff / ((1u << bits_) - 1));
+    if (pixels >= per_byte) append(pixels / per_byte, index_everywhere);
+    for (pixels %= per_byte; pixels > 0; --pixels) add_pixel(index);
   }
-}
+  /// Completes the last byte of the row with zeros.
+  void finish() {
+    while (filled_ > 0) add_pixel(0);
+  }
+
+ private:
+  void add_pixel(unsigned index) {
+    byte_ = byte_ << bits_ | index;
+    filled_ += bits_;
+    if (filled_ < 8) return;
+    append(1, byte_);
+    byte_ = 0;
+    filled_ = 0;
+  }
+  void append(std::uint32_t bytes, unsigned byte) {
+    end_ += bytes;
+    if (!runs_.empty() && runs_.back().pixel == byte) {
+      runs_.back().end = end_;
+    } else {
+      runs_.push_back({end_, byte});
+    }
+  }
+
+  int bits_;
+  std::vector<PixelRun>& runs_;
+  std::uint32_t end_ = 0;  // bytes so far
+  unsigned byte_ = 0;      // being filled
+  int filled_ = 0;         // bits of it
+};
 
 }  // namespace
 
@@ -77,17 +108,6 @@ struct PngJob {
 
 namespace {
 
-/// Appends the bytes of a row as runs of equal bytes.
-void append_byte_runs(std::span<const std::uint8_t> bytes, std::vector<PixelRun>& runs) {
-  for (std::uint32_t i = 0; i < bytes.size(); ++i) {
-    if (!runs.empty() && runs.back().pixel == bytes[i]) {
-      runs.back().end = i + 1;
-    } else {
-      runs.push_back({i + 1, bytes[i]});
-    }
-  }
-}
-
 /// Passes the rows of the picture to the deflater, with colours converted to pixels by pixel_of.
 template <typename PixelOf>
 void deflate_rows(const RunPicture& picture, std::uint32_t bytes_per_pixel, PngJob& job,
@@ -102,19 +122,17 @@ void deflate_rows(const RunPicture& picture, std::uint32_t bytes_per_pixel, PngJ
 
 /// The same for indices that share bytes.
 void deflate_packed_rows(const RunPicture& picture, PngJob& job) {
-  const auto width = static_cast<std::size_t>(picture.width);
-  std::vector<std::uint8_t> indices(width);
-  std::vector<std::uint8_t> packed((width * static_cast<std::size_t>(job.bits) + 7) / 8);
-  job.deflater.begin(static_cast<std::uint32_t>(packed.size()), 1);
+  const auto bits_of_row = static_cast<std::uint32_t>(picture.width * job.bits);
+  job.deflater.begin((bits_of_row + 7) / 8, 1);
   for (int row = 0; row < picture.height; ++row) {
+    job.row.clear();
+    BitPacker packer(job.bits, job.row);
     std::uint32_t begin = 0;
     for (const Run& run : picture.row(row)) {
-      std::memset(indices.data() + begin, job.palette.index_of[run.colour], run.end - begin);
+      packer.add(run.end - begin, job.palette.index_of[run.colour]);
       begin = run.end;
     }
-    pack_bits(indices, job.bits, packed.data());
-    job.row.clear();
-    append_byte_runs(packed, job.row);
+    packer.finish();
     job.deflater.add_row(job.row);
   }
 }
