@@ -4,9 +4,11 @@
 // Thread-safety: immutable, any number of threads may read.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "core/layer/feature_table.h"
 #include "server/values/joined_values.h"
@@ -39,8 +41,12 @@ class Attributes {
     return index == joined_index() ? joined_field_
                                    : features_->fields()[static_cast<std::size_t>(index)];
   }
+  /// Null also for a number that is not finite, as in the documents: JSON has none.
   Value value(std::uint32_t row, int index) const {
-    return index == joined_index() ? joined_->value(row) : features_->value(row, index);
+    const Value value =
+        index == joined_index() ? joined_->value(row) : features_->value(row, index);
+    const auto* real = std::get_if<double>(&value);
+    return real != nullptr && !std::isfinite(*real) ? Value() : value;
   }
 
  private:

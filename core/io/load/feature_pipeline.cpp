@@ -261,6 +261,10 @@ void FeaturePipeline::accept(SourceFeature& next, const Take& take) {
     return;
   }
   const std::int64_t id = next.feature->GetFID();
+  if (next.follows_lost_lines) {
+    tally_.skip({order, 0, id}, "is read, but what precedes it is not: " + next.failure);
+    next.failure.clear();
+  }
   std::unique_ptr<OGRGeometry> geometry(next.feature->StealGeometry(next.layer->geometry_field));
   if (geometry == nullptr && !next.failure.empty()) {
     tally_.skip({order, 0, id}, next.failure);

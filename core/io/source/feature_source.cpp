@@ -249,8 +249,9 @@ void FeatureSource::expect(OGRLayer& layer) {
 
 std::vector<std::string> FeatureSource::warnings() const {
   std::vector<std::string> warnings;
-  // Such as that integers beyond 64 bits all become the same one.
-  if (!warning_.empty() && driver().starts_with("GeoJSON")) {
+  // Such as that integers beyond 64 bits all become the same one, or that the reference system is
+  // unknown, for which GDAL takes WGS 84. An error in a geometry is met again when it is read.
+  if (!warning_.empty() && warning_ != failure_ahead_ && driver().starts_with("GeoJSON")) {
     warnings.push_back("is not read as it is written: " + warning_);
   }
   if (!failure_ahead_.empty()) {
@@ -329,6 +330,8 @@ bool FeatureSource::read_next(SourceFeature& next) {
   if (next.feature != nullptr) {
     ++read_;
     next.failure = messages_.has_failure() ? messages_.text() : std::string();
+    next.follows_lost_lines =
+        driver() == "GeoJSONSeq" && next.failure.starts_with("JSON parsing error");
     const bool has_failed = !next.failure.empty() || !failure_ahead_.empty();
     if (has_failed && is_read_ahead(driver())) assign_failure_ahead(next);
   }

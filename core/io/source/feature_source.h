@@ -35,6 +35,7 @@ struct SourceFeature {
   /// GDAL's error while reading it, if any. If the format is parsed many features at a time: the
   /// latest error so far, and only if this feature has no geometry.
   std::string failure;
+  bool follows_lost_lines = false;  // the error concerns lines of a GeoJSON sequence before it
 };
 
 class FeatureSource {

@@ -75,6 +75,10 @@ void register_drivers() {
   static std::once_flag once;
   std::call_once(once, [] {
     GDALAllRegister();
+    // GDAL would take sizes and positions of the last .gz that it read for those of the file that
+    // has replaced it, which then cannot be read, and would write a file beside each.
+    CPLSetConfigOption("CPL_VSIL_GZIP_SAVE_INFO", "NO");
+    CPLSetConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
     CPLHTTPSetFetchCallback(refuse_download, nullptr);
   });
 }
@@ -204,7 +208,7 @@ GDALDatasetUniquePtr open_source(const std::string& path, std::string* warning) 
     fail(path, "cannot be opened: " + messages.text());
   }
   if (dataset == nullptr) explain_refusal(path, std::string(messages.text()));
-  if (warning != nullptr && !messages.has_failure()) *warning = messages.text();
+  if (warning != nullptr) *warning = messages.text();
   if (dataset->GetLayerCount() > 0) return dataset;
   if (!messages.has_failure()) fail(path, "has no layer of vector data");
   fail(path, std::string("is broken (") + dataset->GetDriverName() + "): " + messages.text());

@@ -19,7 +19,7 @@ class SourceError : public std::runtime_error {
 /// Opens `path` (a file, a File Geodatabase folder, a GDAL /vsi path or a PostgreSQL connection
 /// string) read-only. Throws std::runtime_error that names the source and the problem: missing, a
 /// folder, unreadable, empty, no vector data, a format that is not allowed, or broken. `warning`,
-/// if not null, receives GDAL's first warning, unless there was an error.
+/// if not null, receives GDAL's first error or, if there is none, its first warning.
 GDALDatasetUniquePtr open_source(const std::string& path, std::string* warning = nullptr);
 
 /// Whether sources of this driver hold plain rings, which GDAL would have to group to polygons, and

@@ -176,10 +176,63 @@ std::string shortage_of_database(const std::string& path) {
   return "is cut off: its last page lacks " + of_all(page - over, page, "bytes");
 }
 
+/// Finds where the first object or list of a JSON text ends.
+class JsonValueEnd {
+ public:
+  bool is_passed() const { return is_passed_; }
+  void take(char c) {
+    if (is_escaped_) {
+      is_escaped_ = false;
+    } else if (is_in_string_) {
+      is_escaped_ = c == '\\';
+      is_in_string_ = c != '"';
+    } else if (c == '"') {
+      is_in_string_ = true;
+    } else if (c == '{' || c == '[') {
+      ++depth_;
+    } else if (c == '}' || c == ']') {
+      is_passed_ = --depth_ <= 0;
+    }
+  }
+
+ private:
+  bool is_in_string_ = false;
+  bool is_escaped_ = false;
+  bool is_passed_ = false;
+  std::int64_t depth_ = 0;
+};
+
+/// GDAL reads the first value of a text that is not a collection of features, and passes over what
+/// follows: all other features of a sequence that it does not recognize as one.
+std::string shortage_of_json(GDALDataset& dataset) {
+  constexpr std::size_t kBlock = 65536;
+  constexpr std::string_view kBlank(" \t\r\n\0);", 7);  // the brackets are those of JSONP
+  if (dataset.GetLayerCount() != 1 || dataset.GetLayer(0)->GetFeatureCount(FALSE) != 1) return {};
+  SourceFile file(dataset.GetDescription());
+  if (!file.is_open()) return {};
+  JsonValueEnd end;
+  std::uint64_t offset = 0;
+  for (;;) {
+    const std::vector<std::uint8_t> block = file.read(offset, kBlock);
+    if (block.empty()) return {};
+    for (const std::uint8_t byte : block) {
+      const char c = static_cast<char>(byte);
+      if (!end.is_passed()) {
+        end.take(c);
+      } else if (kBlank.find(c) == std::string_view::npos) {
+        return "only its first feature would be read, and more follows it: a sequence of GeoJSON "
+               "has one feature a line and begins without a byte order mark";
+      }
+    }
+    offset += block.size();
+  }
+}
+
 }  // namespace
 
 std::string shortage_of_files(GDALDataset& dataset) {
   const std::string driver = dataset.GetDriverName();
+  if (driver == "GeoJSON") return shortage_of_json(dataset);
   if (driver == "ESRI Shapefile") return shortage_of_shapefiles(dataset);
   if (driver == "GPKG" || driver == "SQLite") return shortage_of_database(dataset.GetDescription());
   return {};

@@ -11,8 +11,9 @@
 namespace trapeze {
 
 /// What the files of a dataset lack, in words: for a Shapefile, shapes or rows, according to its
-/// .shx and .dbf; for an SQLite database, such as a GeoPackage, the end of its last page. Empty if
-/// nothing is known to be missing. Reads only headers and the .shx.
+/// .shx and .dbf; for an SQLite database, such as a GeoPackage, the end of its last page; for a
+/// GeoJSON of one feature, what follows it. Empty if nothing is known to be missing. Reads only
+/// headers, the .shx and a GeoJSON of one feature.
 std::string shortage_of_files(GDALDataset& dataset);
 
 /// Whether the feature count that sources of this driver declare for a layer equals the number that

@@ -132,6 +132,16 @@ TEST_F(LoadLayerTest, CountsEveryFeatureOnce) {
   EXPECT_EQ(without_geometry, 2u);
 }
 
+TEST_F(LoadLayerTest, CountsALineOfAGeoJsonSequenceThatCannotBeRead) {
+  const std::string square = R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon",)"
+                             R"("coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}})";
+  const std::string path =
+      folder_.write("a.geojsonl", square + "\n{\"type\":\"Feature\",\"geom\n" + square + "\n");
+  const LoadReport report = load_layer(path).report;
+  EXPECT_EQ(report.loaded, 2u);
+  EXPECT_EQ(report.skipped, 1u);
+}
+
 TEST_F(LoadLayerTest, SkipsFeaturesOfGeoJsonWhoseGeometryCannotBeRead) {
   const std::string square = R"("Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]])";
   const auto feature = [](int id, const std::string& type) {
@@ -150,6 +160,17 @@ TEST_F(LoadLayerTest, SkipsFeaturesOfGeoJsonWhoseGeometryCannotBeRead) {
   EXPECT_THAT(report.notes[0].reason, HasSubstr("coordinate"));
   ASSERT_EQ(report.warnings.size(), 1u);
   EXPECT_THAT(report.warnings[0], HasSubstr("cannot be read as a whole"));
+}
+
+TEST_F(LoadLayerTest, WarnsOfAGeoJsonWhoseReferenceSystemIsUnknown) {
+  const std::string path = folder_.write(
+      "a.geojson",
+      R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:102100"}},)"
+      R"("features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon",)"
+      R"("coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}}]})");
+  const LoadReport report = load_layer(path).report;
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_THAT(report.warnings[0], HasSubstr("crs not found"));
 }
 
 TEST_F(LoadLayerTest, KeepsAttributesOfAllTypesAndIds) {

@@ -168,6 +168,19 @@ TEST_F(SourceShortageTest, ADatabaseThatLacksAPartOfItsLastPageIsRefused) {
   }
 }
 
+TEST_F(SourceShortageTest, FeaturesThatFollowASingleOneAreNotPassedOver) {
+  const std::string square =
+      R"({"type":"Feature","properties":{"a":"}\\\""},)"
+      R"("geometry":{"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}})";
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(failure_of(folder_.write("one.geojson", mark + square + "\r\n\n")), "was loaded");
+  EXPECT_EQ(failure_of(folder_.write("lines.geojsonl", square + "\n" + square + "\n")),
+            "was loaded");
+  for (const std::string& text : {mark + square + "\n" + square, square + square}) {
+    EXPECT_THAT(failure_of(folder_.write("a.geojsonl", text)), HasSubstr("only its first feature"));
+  }
+}
+
 TEST_F(SourceShortageTest, TextThatIsCutOffIsRefused) {
   for (const auto& [name, driver] :
        {std::pair("a.geojson", "GeoJSON"), {"a.geojsonl", "GeoJSONSeq"}, {"a.gml", "GML"}}) {
