@@ -71,7 +71,9 @@ class Spawning {
     sigset_t signals;
     sigemptyset(&signals);
     posix_spawnattr_setsigmask(&attributes_, &signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaddset(&signals, signal);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) {
+      sigaddset(&signals, signal);
+    }
     posix_spawnattr_setsigdefault(&attributes_, &signals);
     std::string text = command;
     std::array<char, 3> shell{"sh"};

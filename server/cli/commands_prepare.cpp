@@ -183,6 +183,13 @@ std::shared_ptr<const SourceDivision> divide(const std::string& file, const Load
 /// Writes the overview of these parts to that file.
 void join(const std::vector<std::string>& files, const std::string& output) {
   const auto parts = find_prepared_parts(files, {});
+  for (const auto& part : parts) {
+    std::error_code error;
+    if (std::filesystem::equivalent(part->path(), output, error)) {
+      throw UsageError(
+          fmt::format("--output: {} is a part, which the overview would replace", output));
+    }
+  }
   LoadedLayer overview;
   {
     LoadProgress progress(output);

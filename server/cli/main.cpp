@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -151,7 +152,8 @@ Examples:
 
 Writes the simplified polygons that tiles of that zoom are drawn from, with their attributes.
 The field trapeze_id holds the id of each feature in FILE. Features too small to remain at that
-tolerance are omitted and counted. With --topology strict all polygons are valid.)";
+tolerance are omitted and counted. With --topology strict all polygons are valid, except for
+those in degrees that are named as invalid.)";
 
 constexpr const char* kRenderFooter = R"(
 Examples:
@@ -750,6 +752,8 @@ int status_with_results(int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // At a limit on the size of files (`ulimit -f`), writing fails as on a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     trapeze::return_large_arrays();
     spdlog::set_default_logger(spdlog::stderr_logger_mt("trapeze"));

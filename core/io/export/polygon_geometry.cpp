@@ -191,9 +191,9 @@ PolygonGeometry finer_geometry(const Polygons& polygons, double limit) {
   return result;
 }
 
-bool is_any_invalid(const std::vector<PolygonGeometry>& geometries) {
-  return std::any_of(geometries.begin(), geometries.end(),
-                     [](const PolygonGeometry& geometry) { return geometry.is_invalid; });
+std::ptrdiff_t count_invalid(const std::vector<PolygonGeometry>& geometries) {
+  return std::count_if(geometries.begin(), geometries.end(),
+                       [](const PolygonGeometry& geometry) { return geometry.is_invalid; });
 }
 
 /// All with the same limit; empty if one would have too many vertices.
@@ -226,12 +226,16 @@ std::vector<PolygonGeometry> geometries_of_neighbours(std::span<const Polygons> 
     is_any_subdivided = is_any_subdivided || plain.back().subdivided > 0;
   }
   if (!is_any_subdivided) return plain;
+  // No limit helps a polygon whose vertices almost touch its edges. All the others still need the
+  // same vertices as their neighbours: in `plain`, each has its own.
+  std::vector<PolygonGeometry> best;
   for (const double limit : kDeviations) {
     std::vector<PolygonGeometry> finer = finer_geometries(neighbours, limit);
     if (finer.empty()) break;
-    if (!is_any_invalid(finer)) return finer;
+    if (best.empty() || count_invalid(finer) < count_invalid(best)) best = std::move(finer);
+    if (count_invalid(best) == 0) break;
   }
-  return plain;
+  return best.empty() ? std::move(plain) : std::move(best);
 }
 
 OGRSpatialReference reference_of(ExportCrs crs) {

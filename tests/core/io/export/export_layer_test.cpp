@@ -569,6 +569,47 @@ TEST(ExportLayerTest, LongEdgesGetVerticesInDegreesWhereThePolygonWouldNotBeVali
   EXPECT_TRUE(Written(output).are_all_valid());
 }
 
+// A and B share a long edge, near which A has a vertex. C has a vertex that almost touches its own
+// long edge, so no number of additional vertices makes it valid in degrees.
+TEST(ExportLayerTest, AFeatureThatIsNotValidInDegreesLeavesTheBordersOfOthersIdentical) {
+  const TemporaryFolder folder;
+  const std::string source = metres_source(folder, {{.wkt = "POLYGON(("
+                                                            "0.0 6446275.837354153,"
+                                                            "0.0 5621521.477824285,"
+                                                            "2207728.429933299 5621521.477824285,"
+                                                            "2226389.813791984 8747495.747667242,"
+                                                            "2245051.19765067 5621521.477824285,"
+                                                            "4452779.627583968 5621521.477824285,"
+                                                            "4452779.627583968 11068715.641564585,"
+                                                            "0.0 6446275.837354153"
+                                                            "))"},
+                                                    {.wkt = "POLYGON(("
+                                                            "0.0 6446275.837354153,"
+                                                            "4452779.627583968 11068715.641564585,"
+                                                            "4452779.627583968 11753184.596831644,"
+                                                            "1451126.1720493205 11753184.596831644,"
+                                                            "1413803.4043319493 11753184.596831644,"
+                                                            "0.0 11753184.596831644,"
+                                                            "0.0 6446275.837354153"
+                                                            "))"},
+                                                    {.wkt = "POLYGON(("
+                                                            "0.0 11753184.596831644,"
+                                                            "1413803.4043319493 11753184.596831644,"
+                                                            "1432464.788190635 13488101.44990033,"
+                                                            "1451126.1720493205 11753184.596831644,"
+                                                            "4452779.627583968 11753184.596831644,"
+                                                            "4452779.646245353 15538711.086229393,"
+                                                            "0.0 12515545.197932897,"
+                                                            "0.0 11753184.596831644"
+                                                            "))"}});
+  ExportOptions options;
+  options.epsilon = 0;
+  const ExportReport report = export_layer(source, folder.file("out.gpkg"), options);
+  EXPECT_EQ(report.invalid, 1u);
+  const Written written(folder.file("out.gpkg"));
+  EXPECT_NE(written[0].GetGeometryRef()->Overlaps(written[1].GetGeometryRef()), TRUE);
+}
+
 // The bump of 30 metres at the side of the square is less than the tolerance, and the hole reaches
 // into it.
 TEST(ExportLayerTest, TheTopologyTestHoldsAVertexWithoutWhichTheHoleWouldCrossTheShell) {
