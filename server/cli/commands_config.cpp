@@ -29,10 +29,12 @@ int run_config_check(const std::string& path) {
   }
   if (!findings.problems.empty()) return 1;
   const std::size_t warnings = findings.warnings.size();
+  const std::string starts =
+      loaded.config.layers.empty() ? "the server starts with files only" : "the server starts";
   std::cout << fmt::format(
       "{}: {}; {}\n", path,
       warnings == 0 ? "nothing is wrong"
-                    : "the server starts, with " + counted(warnings, "warning", "warnings"),
+                    : fmt::format("{}, with {}", starts, counted(warnings, "warning", "warnings")),
       counted(loaded.config.layers.size(), "layer", "layers"));
   return 0;
 }

@@ -33,8 +33,10 @@ std::string escaped(std::string_view text) {
   return escaped.empty() ? "-" : escaped;
 }
 
+/// The bytes of the body that are sent: HEAD is answered without one.
 std::size_t bytes_of(const Answered& answered) {
-  return answered.response.body == nullptr ? 0 : answered.response.body->size();
+  const bool has_body = answered.response.body != nullptr && answered.request.method != "HEAD";
+  return has_body ? answered.response.body->size() : 0;
 }
 
 std::string text_line(const Answered& answered, std::time_t now) {

@@ -48,6 +48,14 @@ TEST(AccessLineTest, JsonHasTheSameByName) {
   EXPECT_EQ(json["user_agent"], "curl/8");
 }
 
+TEST(AccessLineTest, HeadSendsNoBytes) {
+  Sample sample;
+  sample.request.method = "HEAD";
+  EXPECT_THAT(access_line(sample.answered(), LogFormat::text), HasSubstr(" 200 0 "));
+  const auto json = nlohmann::json::parse(access_line(sample.answered(), LogFormat::json));
+  EXPECT_EQ(json["bytes"], 0);
+}
+
 TEST(AccessLineTest, NothingThatAClientSendsForgesALine) {
   Sample sample;
   sample.agent = "a\" 200\n192.0.2.1 \\ \x1b[31m \xff";
