@@ -29,6 +29,7 @@ const PAGE = [
   "demonstrations.js",
   "detail_panel.js",
   "elements.js",
+  "exact_json.js",
   "feature_choice.js",
   "feature_panel.js",
   "layer_list.js",

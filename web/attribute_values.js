@@ -1,9 +1,11 @@
 // The values of an attribute, as counted by the server for the current view or a whole layer.
 
+import { parse_exactly } from "./exact_json.js";
 import { query_part } from "./tile_query.js";
 
 /**
- * Returns {values: [{value, count}], the most frequent first; quantiles: ascending, for numbers, else []}.
+ * Returns {values: [{value, count}], the most frequent first, with integers beyond 2^53 as strings;
+ * quantiles: ascending, for numbers, else []}.
  * Both are empty if there are no values or no response.
  * @param box in degrees; null: the whole layer
  */
@@ -12,9 +14,9 @@ export async function ask_values(base, layer, attribute, box, style) {
     ...style];
   const path = `values/${encodeURIComponent(layer)}/${encodeURIComponent(attribute)}`;
   const told = await fetch(new URL(path + query_part(parameters), base))
-    .then((response) => (response.ok ? response.json() : null)).catch(() => null);
+    .then((response) => (response.ok ? response.text() : "null")).then(parse_exactly).catch(() => null);
   return {
     values: Array.isArray(told?.values) ? told.values : [],
-    quantiles: Array.isArray(told?.quantiles) ? told.quantiles.filter(Number.isFinite) : [],
+    quantiles: Array.isArray(told?.quantiles) ? told.quantiles.map(Number).filter(Number.isFinite) : [],
   };
 }

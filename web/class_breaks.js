@@ -66,23 +66,26 @@ function parts(classes) {
 
 /** The sum of squared distances from their mean, for the numbers from `first` to `last`. */
 function costs_of(sorted) {
-  const sums = [0];
-  const squares = [0];
-  for (const number of sorted) {
-    const shifted = number - sorted[0]; // reduces cancellation in the difference below
-    sums.push(sums.at(-1) + shifted);
-    squares.push(squares.at(-1) + shifted * shifted);
-  }
-  return (first, last) => {
-    const sum = sums[last + 1] - sums[first];
-    return squares[last + 1] - squares[first] - (sum * sum) / (last + 1 - first);
-  };
+  // Each sum is of these numbers only: in differences of running sums, one number far from the others, such
+  // as -1e38 for "no data", would leave no digits for those.
+  const costs = sorted.map((_, first) => {
+    let [mean, squares] = [sorted[first], 0];
+    return sorted.slice(first).map((number, before) => {
+      const distance = number - mean;
+      mean += distance / (before + 1);
+      squares += distance * (number - mean);
+      return squares >= 0 ? squares : Infinity; // not NaN after an overflow
+    });
+  });
+  return (first, last) => costs[first][last - first];
 }
 
 /** The number with the fewest digits that separates the one at `first` from the numbers below it. */
 function break_before(sorted, first) {
-  const [below, at] = [sorted[first - 1] ?? sorted[first], sorted[first]];
-  if (!(at > below)) return at;
+  const at = sorted[first];
+  // Equal numbers are in the same class, and have the same break.
+  const below = sorted[sorted.indexOf(at) - 1] ?? at;
+  if (!(at > below && Number.isFinite(at - below))) return at;
   for (let power = Math.ceil(Math.log10(at - below)); power >= -MOST_DIGITS; power--) {
     const found = multiple(Math.floor(at / 10 ** power), 10 ** power);
     if (found > below && found <= at) return found;

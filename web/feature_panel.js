@@ -1,6 +1,7 @@
 // The features at a place with their attributes, one of them selected.
 
 import { button, element } from "./elements.js";
+import { parse_exactly } from "./exact_json.js";
 import { tile_requests } from "./tile_requests.js";
 
 /**
@@ -24,7 +25,7 @@ async function ask(url) {
   } catch {
     throw new Error("The server cannot be reached.");
   }
-  const told = await response.json().catch(() => null);
+  const told = await response.text().then(parse_exactly).catch(() => null);
   if (!response.ok) {
     throw new Error(told?.detail ?? `The server answered with status ${response.status}.`);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "render/mask/stroke.h"
@@ -59,6 +60,10 @@ class ClassLabels {
     const double step = least_step();
     if (!(step > 0) || !std::isfinite(step)) return;
     NumberFormat apart = format_for_step(step);
+    if (!tells_apart([&apart](double number) { return formatted(number, apart); })) {
+      significant_ = significant_digits();
+      return;
+    }
     while (*apart.digits > 0 && all_end_with_zero(apart)) --*apart.digits;
     if (!format_) format_ = apart;
     format_->digits = apart.digits;
@@ -118,6 +123,7 @@ class ClassLabels {
   }
 
   std::string number(double number) const {
+    if (significant_ > 0) return with_significant(number, significant_);
     return format_ ? formatted(number, *format_) : fmt::format("{}", number);
   }
   std::string with_units(std::string text) const {
@@ -130,6 +136,29 @@ class ClassLabels {
   bool is_ruled() const {
     return style_.origin && style_.origin->rule && style_.origin->spread != nullptr &&
            !style_.origin->spread->is_empty();
+  }
+  static std::string with_significant(double number, int digits) {
+    return fmt::format("{:.{}g}", number, digits);
+  }
+  /// As many as needed to tell the numbers in labels apart.
+  int significant_digits() const {
+    int digits = 2;
+    while (digits < std::numeric_limits<double>::max_digits10 &&
+           !tells_apart([digits](double number) { return with_significant(number, digits); })) {
+      ++digits;
+    }
+    return digits;
+  }
+  /// Whether different numbers in labels are written differently.
+  template <typename Write>
+  bool tells_apart(const Write& write) const {
+    double below = least();
+    const auto is_told = [&](double at) {
+      const bool is_other = at == below || write(at) != write(below);
+      below = at;
+      return is_other;
+    };
+    return std::ranges::all_of(style_.classing.breaks, is_told) && is_told(greatest());
   }
   /// Whether the last digit of all numbers in labels is zero.
   bool all_end_with_zero(const NumberFormat& format) const {
@@ -154,6 +183,7 @@ class ClassLabels {
 
   const LayerStyle& style_;
   std::optional<NumberFormat> format_;
+  int significant_ = 0;  // digits, for numbers that decimals do not tell apart; 0: as in the format
 };
 
 /// The title of the joined values, if they colour the layer.

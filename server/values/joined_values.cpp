@@ -40,9 +40,9 @@ class NumberedRows {
   template <typename Read>
   NumberedRows(const ValueTable& table, Read read) {
     for (std::uint32_t row = 0; row < table.size(); ++row) {
-      if (const std::optional<Number> number = read(table.key(row))) {
-        rows_.emplace_back(*number, row);
-      }
+      std::string key(table.key(row));
+      if (table.has_decimal_commas()) std::ranges::replace(key, ',', '.');
+      if (const std::optional<Number> number = read(key)) rows_.emplace_back(*number, row);
     }
     std::ranges::sort(rows_);
   }

@@ -164,6 +164,8 @@ std::optional<Problem> ValueTableBuilder::add(std::string_view key, std::string_
   if (table_.text_.size() + key.size() + value.size() > std::numeric_limits<std::uint32_t>::max()) {
     return Problem{413, "A table has at most 4 GB of text."};
   }
+  // Only with a comma to read, because it is part of the identity.
+  table_.has_decimal_commas_ |= has_decimal_commas_ && key.find(',') != std::string_view::npos;
   const auto row = static_cast<std::uint32_t>(table_.rows_.size());
   table_.rows_.push_back({static_cast<std::uint32_t>(table_.text_.size()),
                           static_cast<std::uint16_t>(key.size()),
@@ -287,9 +289,10 @@ void ValueTableBuilder::give_up_text() {
 
 /// A digest of the whole contents: keys, each followed by its word, are in the text in row order.
 std::string ValueTableBuilder::identity() const {
-  const std::string head = fmt::format(
-      "{}:{} {}:{} {} {} ", table_.names_.key.size(), table_.names_.key, table_.names_.value.size(),
-      table_.names_.value, static_cast<int>(table_.type_), table_.rows_.size());
+  const std::string head =
+      fmt::format("{}:{} {}:{} {} {} {}", table_.names_.key.size(), table_.names_.key,
+                  table_.names_.value.size(), table_.names_.value, static_cast<int>(table_.type_),
+                  table_.rows_.size(), table_.has_decimal_commas_ ? "," : "");
   std::vector<std::uint32_t> sizes(table_.rows_.size());
   for (std::uint32_t row = 0; row < table_.rows_.size(); ++row) {
     const ValueTable::Row& place = table_.rows_[row];

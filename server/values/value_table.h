@@ -35,6 +35,8 @@ class ValueTable {
   std::size_t missing() const { return missing_; }
   /// The number of rows of the source that had a value but no key, and were therefore left out.
   std::size_t without_key() const { return without_key_; }
+  /// Whether "1,5" is a number among the keys.
+  bool has_decimal_commas() const { return has_decimal_commas_; }
   /// If the values are words: the first one that is not a number.
   const std::string& first_word() const { return first_word_; }
 
@@ -60,6 +62,7 @@ class ValueTable {
   FieldType type_ = FieldType::text;
   std::size_t missing_ = 0;
   std::size_t without_key_ = 0;
+  bool has_decimal_commas_ = false;
   std::string first_word_;
   std::string text_;
   std::vector<Row> rows_;

@@ -57,6 +57,20 @@ test("no other breaks have numbers nearer to the means of their classes than nat
   }
 });
 
+test("natural breaks are the same beside a number that means no data", () => {
+  const numbers = [10, 11, 12, 40, 41, 42, 90, 91, 92];
+  for (const far of [-9999, -1e10, -3.4e38, -Number.MAX_VALUE]) {
+    const parts = classes_by(natural_breaks([far, ...numbers], 4), [far, ...numbers]);
+    assert.deepEqual(parts, [[far], [10, 11, 12], [40, 41, 42], [90, 91, 92]]);
+  }
+});
+
+test("no class between breaks is empty where numbers are equal", () => {
+  assert.deepEqual(quantile_breaks([1.2, 5.7, 5.7, 5.7, 5.7, 9.3], 4), [5]);
+  const ends = [-Number.MAX_VALUE, Number.MAX_VALUE];
+  for (const way of [natural_breaks, quantile_breaks]) assert.deepEqual(way(ends, 3), [Number.MAX_VALUE]);
+});
+
 test("breaks ascend, have few digits, and none has nothing below it, whatever the numbers", () => {
   const cases = [[5], [5, 5, 5], [0, 1], [-3, -2, -1], [0.001, 0.002, 0.009], [1e9, 2e9, 7e9],
     [1950, 1960, 1999, 2001], [0, 0, 0, 0, 0, 0, 7]];

@@ -272,6 +272,15 @@ TEST_F(ValuesSiteTest, HasFewerClassesWhereThereAreFewerValuesAndSaysSo) {
   EXPECT_EQ(colour(query, 0), colour(query, 2));
 }
 
+TEST_F(ValuesSiteTest, LabelsTellClassesApartHoweverSmallTheNumbersAre) {
+  const std::string id = id_of("code,v\nC0,1e-12\nC1,2.5e-12\nC2,8e-12\n");
+  const Json layer = json("/legend/columns.json?values=" + id +
+                          "&color-by=value&breaks=quantile:3&ramp=Reds")["layers"][0];
+  EXPECT_EQ(layer["entries"][0]["label"], "1e-12 to 2.5e-12");
+  EXPECT_EQ(layer["entries"][1]["label"], "2.5e-12 to 8e-12");
+  EXPECT_EQ(layer["entries"][2]["label"], "8e-12");
+}
+
 TEST_F(ValuesSiteTest, HasTagsOfWhatIsSeen) {
   const std::string rest = "&color-by=value&breaks=4&ramp=Reds";
   const auto tag = [&](const std::string& table) {

@@ -63,6 +63,14 @@ TEST_F(JoinedValuesTest, JoinsByNumbersHoweverTheyAreWritten) {
   EXPECT_TRUE(join("key,value\n7.50,1\nnan,2\n", 2)->value(3) == Value(std::int64_t{1}));
 }
 
+TEST_F(JoinedValuesTest, TakesCommasForPointsInKeysWhereSemicolonsPartFields) {
+  EXPECT_TRUE(join("key;value\n7,50;1\n", 2)->value(3) == Value(std::int64_t{1}));
+  EXPECT_TRUE(join("key;value\n7,0;1\n", 1)->value(3) == Value(std::int64_t{1}));
+  EXPECT_THAT(join("key\tvalue\n7,50\t1\n", 2)->unmatched_keys(), ElementsAre("7,50"));
+  EXPECT_NE(table_of("key;value\n7,50;1\n")->id(), table_of("key\tvalue\n7,50\t1\n")->id());
+  EXPECT_EQ(table_of("key;value\n7.50;1\n")->id(), table_of("key\tvalue\n7.50\t1\n")->id());
+}
+
 TEST_F(JoinedValuesTest, RefusesKeysThatAreTheSameNumber) {
   const auto joined = JoinedValues::join(table_of("key,value\n7,1\n007,2\n"), *layer_, 1);
   ASSERT_FALSE(joined);
