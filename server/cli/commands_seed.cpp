@@ -99,7 +99,10 @@ class ProgressLine {
 };
 
 std::vector<std::string> layers_of(const SeedArguments& arguments, const Config& config) {
-  std::vector<std::string> names = arguments.layers;
+  std::vector<std::string> names;
+  for (const std::string& name : arguments.layers) {  // as in an address, where each counts once
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
   if (names.empty()) {
     for (const LayerConfig& layer : config.layers) names.push_back(layer.name);
   }
@@ -156,6 +159,18 @@ GeographicBounds bounds_of(const LayerSummary& summary, const SeedRequest& reque
   return both[0] < both[2] && both[1] < both[3] ? both : box;
 }
 
+/// The middle of the archive's bounds. They do not go over the antimeridian, even if the layers do:
+/// the middle is then that of the layers, as in TileJSON, and not on the other side of the world.
+GeographicCenter center_of(const ArchiveDescription& archive, const LayerSummary& summary,
+                           const SeedRequest& request, const Dataset& dataset) {
+  const auto [west, south, east, north] = archive.bounds;
+  const auto whole = summary.bounds();
+  const LongitudeStrip strip = strip_around_layers(request.tile.layers, dataset);
+  const bool is_over = strip.east > 180 && west == whole[0] && east == whole[2];
+  const double middle = is_over ? (strip.west + strip.east) / 2 : (west + east) / 2;
+  return {round_degrees(middle > 180 ? middle - 360 : middle), round_degrees((south + north) / 2)};
+}
+
 ArchiveDescription describe(const SeedRequest& request, const Dataset& dataset) {
   const auto summary = summarize_layers(request.tile.layers, dataset);
   ArchiveDescription archive;
@@ -164,6 +179,7 @@ ArchiveDescription describe(const SeedRequest& request, const Dataset& dataset) 
   archive.attribution = summary->attribution;
   archive.zooms = request.zooms;
   archive.bounds = bounds_of(*summary, request);
+  archive.center = center_of(archive, *summary, request, dataset);
   archive.format = request.tile.format;
   archive.scale = request.tile.scale;
   archive.layers = fmt::format("{}", fmt::join(request.tile.layers, ","));
@@ -318,6 +334,7 @@ int run_seed(const SeedArguments& arguments) {
   const JoinOptions options{arguments.is_sparse};
   if (arguments.output.empty() && !arguments.is_dry_run) throw UsageError("--output is missing");
   if (!arguments.join.empty()) {
+    if (arguments.is_dry_run) throw UsageError("--join does not go with --dry-run");
     check_place_of_archive(arguments.output);
     make_archive(arguments.join, arguments.output, options);
     return 0;

@@ -2,6 +2,7 @@
 // curve.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,6 +16,9 @@
 
 namespace trapeze {
 
+/// Longitude and latitude in degrees.
+using GeographicCenter = std::array<double, 2>;
+
 /// The metadata of an archive.
 struct ArchiveDescription {
   std::string name;
@@ -22,6 +26,7 @@ struct ArchiveDescription {
   std::string attribution;
   ZoomRange zooms;
   GeographicBounds bounds = kWorldBounds;
+  GeographicCenter center = {0, 0};
   TileFormat format = TileFormat::png;
   int scale = 1;
   std::string layers;  // comma-separated

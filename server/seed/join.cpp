@@ -1,6 +1,7 @@
 #include "server/seed/join.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <optional>
@@ -54,6 +55,30 @@ class Runs {
   std::optional<ArchiveTiles> run_;
 };
 
+/// Why a finished folder cannot get this name; empty if it can. It replaces what has the name,
+/// which must be noticed before the tiles are drawn.
+std::string problem_with_folder_at(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path given(path);
+  const fs::path folder = given.has_filename() ? given : given.parent_path();
+  if (folder.filename() == "." || folder.filename() == "..") {
+    return "this is no name that the finished folder could get; name another one";
+  }
+  std::error_code error;
+  if (fs::is_symlink(folder, error)) return "it is a symbolic link; name another folder";
+  if (!fs::exists(folder, error)) return {};
+  if (!fs::is_directory(folder, error)) return "it exists and is not a folder; name another one";
+  if (!fs::is_empty(folder, error)) {
+    return "the folder exists and is not empty; name another one";
+  }
+  struct stat inside {};
+  struct stat outside {};
+  const bool is_mounted = stat(folder.c_str(), &inside) == 0 &&
+                          stat((folder / "..").c_str(), &outside) == 0 &&
+                          inside.st_dev != outside.st_dev;
+  return is_mounted ? "a file system is mounted there; name a folder in it" : std::string();
+}
+
 }  // namespace
 
 void check_place_of_archive(const std::string& path) {
@@ -66,9 +91,11 @@ void check_place_of_archive(const std::string& path) {
         fmt::format("cannot write {}: there is no folder {}", path, parent.string()));
   }
   const bool is_folder = kind_of_archive(path) == ArchiveKind::folder;
-  if (is_folder && fs::exists(path, error) && !fs::is_empty(path, error)) {
-    throw std::runtime_error(
-        fmt::format("cannot write {}: the folder exists and is not empty; name another one", path));
+  if (is_folder) {
+    const std::string problem = problem_with_folder_at(path);
+    if (!problem.empty()) {
+      throw std::runtime_error(fmt::format("cannot write {}: {}", path, problem));
+    }
   }
   if (!is_folder && fs::is_directory(path, error)) {
     throw std::runtime_error(fmt::format("cannot write {}: it is a folder", path));

@@ -92,12 +92,12 @@ void MbtilesWriter::run(const Statement& statement) {
 
 void MbtilesWriter::add_metadata(const ArchiveDescription& description) {
   const auto [west, south, east, north] = description.bounds;
+  const auto [longitude, latitude] = description.center;
   std::vector<std::pair<const char*, std::string>> rows = {
       {"name", description.name},
       {"format", std::string(kTileFormatNames.name_of(description.format))},
       {"bounds", fmt::format("{},{},{},{}", west, south, east, north)},
-      {"center",
-       fmt::format("{},{},{}", (west + east) / 2, (south + north) / 2, description.zooms.first)},
+      {"center", fmt::format("{},{},{}", longitude, latitude, description.zooms.first)},
       {"minzoom", fmt::format("{}", description.zooms.first)},
       {"maxzoom", fmt::format("{}", description.zooms.last)},
       {"type", "overlay"},

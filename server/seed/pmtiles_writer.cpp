@@ -211,7 +211,7 @@ std::string PmtilesWriter::header(const Directories& directories, const Section&
     append_little_endian(stored_degrees(degrees), bytes);
   }
   append_little_endian(first_zoom, bytes);
-  for (const double degrees : {(west + east) / 2, (south + north) / 2}) {
+  for (const double degrees : description_.center) {
     append_little_endian(stored_degrees(degrees), bytes);
   }
   return bytes;

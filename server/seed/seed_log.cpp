@@ -45,6 +45,7 @@ std::string text_of(const SeedLogHead& head) {
                      {"minzoom", archive.zooms.first},
                      {"maxzoom", archive.zooms.last},
                      {"bounds", archive.bounds},
+                     {"center", archive.center},
                      {"format", kTileFormatNames.name_of(archive.format)},
                      {"scale", archive.scale},
                      {"layers", archive.layers},
@@ -83,6 +84,7 @@ std::optional<ReadHead> read_head(std::span<const std::byte> bytes) {
     archive.attribution = json.at("attribution");
     archive.zooms = {json.at("minzoom"), json.at("maxzoom")};
     archive.bounds = json.at("bounds");
+    archive.center = json.at("center");
     archive.format = json.at("format") == "webp" ? TileFormat::webp : TileFormat::png;
     archive.scale = json.at("scale");
     archive.layers = json.at("layers");

@@ -34,6 +34,7 @@ ArchiveDescription description(ZoomRange zooms) {
   d.attribution = "drawn by hand";
   d.zooms = zooms;
   d.bounds = {-90, -45, 90, 45.5};
+  d.center = {179.25, 0.25};
   d.layers = "rings,west";
   d.style = "fill=red";
   return d;
@@ -146,6 +147,9 @@ TEST_F(ArchiveTest, PmtilesSaysWhatItIs) {
   EXPECT_EQ(reader.byte(101), kZooms.last);
   EXPECT_DOUBLE_EQ(reader.degrees(102), -90);
   EXPECT_DOUBLE_EQ(reader.degrees(114), 45.5);
+  EXPECT_EQ(reader.byte(118), kZooms.first);
+  EXPECT_DOUBLE_EQ(reader.degrees(119), 179.25);
+  EXPECT_DOUBLE_EQ(reader.degrees(123), 0.25);
   const auto json = nlohmann::json::parse(reader.metadata());
   EXPECT_EQ(json["name"], "Rings");
   EXPECT_EQ(json["attribution"], "drawn by hand");
@@ -256,6 +260,7 @@ TEST_F(ArchiveTest, MbtilesHasEveryTileAndItsMetadata) {
   EXPECT_EQ(metadata("name"), "Rings");
   EXPECT_EQ(metadata("format"), "png");
   EXPECT_EQ(metadata("bounds"), "-90,-45,90,45.5");
+  EXPECT_EQ(metadata("center"), "179.25,0.25,0");
   EXPECT_EQ(metadata("minzoom"), "0");
   EXPECT_EQ(metadata("maxzoom"), "7");
   EXPECT_EQ(metadata("attribution"), "drawn by hand");
@@ -291,6 +296,20 @@ TEST_F(ArchiveTest, AFolderThatHasSomethingInItIsNotReplaced) {
   EXPECT_THROW(check_place_of_archive(path), std::runtime_error);
   EXPECT_THROW(archive("full"), std::runtime_error);
   EXPECT_EQ(read_file(path + "/file"), "mine");
+}
+
+TEST_F(ArchiveTest, WhatAFolderCannotReplaceIsNoticedBeforehand) {
+  const std::string file = folder_.file("empty_file");
+  std::ofstream{file};
+  const std::string target = folder_.file("target");
+  fs::create_directory(target);
+  EXPECT_NO_THROW(check_place_of_archive(target));
+  EXPECT_NO_THROW(check_place_of_archive(target + "/"));
+  const std::string link = folder_.file("link");
+  fs::create_directory_symlink(target, link);
+  for (const std::string& path : {file, target + "/.", target + "/..", link, link + "/"}) {
+    EXPECT_THROW(check_place_of_archive(path), std::runtime_error) << path;
+  }
 }
 
 TEST_F(ArchiveTest, BytesDoNotDependOnThreadsOrParts) {
