@@ -252,7 +252,9 @@ std::string words_of_box(const MapSystem& system, AxisOrder order) {
       "{} in {}, separated by commas, the west less than the east and the south less "
       "than the north",
       is_north_first ? "south, west, north and east" : "west, south, east and north",
-      system.is_in_degrees ? "degrees" : "metres");
+      system.is_in_degrees          ? "degrees"
+      : system.metres_per_unit == 1 ? "metres"
+                                    : "units of " + system.name);
 }
 
 Result<int> pixels_in(const KeyValuePairs& pairs, std::string_view key) {

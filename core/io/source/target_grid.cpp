@@ -19,7 +19,8 @@ namespace {
 constexpr int kSamples = 64;        // across the area, in both directions
 constexpr double kMostAround = 30;  // degrees
 constexpr double kRoom = 1.001;     // factor for the square, so that nothing lies on its edge
-constexpr double kMostGrowth = 16;  // of the square, because of the margin around the area of use
+constexpr double kMostGrowth = 4;   // of the square, because of the margin around the area of use:
+                                    // Mercator reaches a pole, twelve times as far as the world
 
 struct Area {
   double west = 0;
@@ -65,7 +66,25 @@ Area with_margin(const Area& area, double share) {
   return around;
 }
 
-/// Computes the extent of the area on the plane; false if a part of it cannot be projected.
+/// Whether the plane ends at a meridian within the area and continues on its other side, as that of
+/// EPSG:8858 does at 90 degrees east: polygons there would lie across the map. The sides of the
+/// area may be such a meridian, so the first and the last samples do not count. `x` and `y` hold
+/// the samples from south to north, for one meridian after the other.
+bool is_torn(const std::vector<double>& x, const std::vector<double>& y, double side) {
+  constexpr std::size_t kOfMeridian = kSamples + 1;
+  for (std::size_t i = kOfMeridian; i + 2 * kOfMeridian < x.size(); ++i) {
+    const std::size_t east = i + kOfMeridian;
+    if (std::hypot(x[east] - x[i], y[east] - y[i]) > side / 2) return true;
+  }
+  return false;
+}
+
+double side_of(const Area& sides) {
+  return std::max(sides.east - sides.west, sides.north - sides.south);
+}
+
+/// Computes the extent of the area on the plane; false if a part of it cannot be projected, or the
+/// plane is torn there.
 bool project(const Area& area, OGRCoordinateTransformation& forward, Area& sides) {
   std::vector<double> x;
   std::vector<double> y;
@@ -87,11 +106,7 @@ bool project(const Area& area, OGRCoordinateTransformation& forward, Area& sides
   const auto [west, east] = std::minmax_element(x.begin(), x.end());
   const auto [south, north] = std::minmax_element(y.begin(), y.end());
   sides = {*west, *south, *east, *north};
-  return true;
-}
-
-double side_of(const Area& sides) {
-  return std::max(sides.east - sides.west, sides.north - sides.south);
+  return !is_torn(x, y, side_of(sides));
 }
 
 /// Around a pole, eastings too may grow towards the north or the south.
@@ -127,7 +142,8 @@ std::shared_ptr<const TargetGrid> make_grid(const std::string& name) {
       OGRCreateCoordinateTransformation(&lonlat, reference.get()));
   Area inner;
   if (forward == nullptr || !project(used, *forward, inner)) {
-    refuse(name, "cannot be transformed from WGS 84 in all of its area of use");
+    refuse(name,
+           "cannot be transformed from WGS 84 in all of its area of use, or not without a break");
   }
   Area drawn = used;
   Area sides = inner;

@@ -84,6 +84,7 @@ TEST(TargetGridTest, RefusesWhatIsNoPlaneOrNotKnown) {
   for (const auto& [name, words] :
        {std::pair("EPSG:4326", "is no system of a plane"),
         std::pair("EPSG:99999", "that PROJ does not know"),
+        std::pair("ESRI:53036", "not without a break"),
         std::pair("+proj=merc", "is not the name of a reference system"),
         std::pair("/etc/passwd", "is not the name of a reference system")}) {
     try {
@@ -94,6 +95,17 @@ TEST(TargetGridTest, RefusesWhatIsNoPlaneOrNotKnown) {
                   ::testing::AllOf(::testing::StartsWith(name), ::testing::HasSubstr(words)));
     }
   }
+}
+
+// Equal Earth for the Americas is the world from 90 degrees east to 90 degrees east.
+TEST(TargetGridTest, EndsWhereThePlaneIsTorn) {
+  const auto grid = find_target_grid("EPSG:8858");
+  EXPECT_NEAR(grid->west, 90, 0.1);
+  EXPECT_NEAR(grid->east, 450, 0.1);
+}
+
+TEST(TargetGridTest, StopsShortOfThePolesOfMercator) {
+  EXPECT_LT(find_target_grid("EPSG:3395")->metres_per_cell(), 0.05);
 }
 
 struct Case {
