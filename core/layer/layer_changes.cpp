@@ -50,7 +50,8 @@ using HashedPlaces = std::vector<std::pair<std::uint64_t, LayerChanges::Place>>;
 /// The content of a layer that is compared.
 class Summary {
  public:
-  Summary(const Layer& layer, Ids ids) : layer_(layer) {
+  Summary(const LayerWithFeatures& state, Ids ids)
+      : layer_(state.layer), features_(state.features) {
     hash_edges();
     hash_identities(ids);
     hash_features();
@@ -81,7 +82,7 @@ class Summary {
   void hash_features();
   std::vector<HashedRow> sorted_rows() const;
   std::vector<char> marked(std::span<const std::uint32_t> rows) const;
-  std::size_t rows() const { return layer_.features().size(); }
+  std::size_t rows() const { return features_.size(); }
   const MeshView& mesh() const { return layer_.mesh(); }
   const LayerContents& contents() const { return layer_.contents(); }
   /// Calls visit(trapezoid) for all trapezoids of one of the kinds that exist at some level.
@@ -90,6 +91,7 @@ class Summary {
   std::uint64_t spans_of(std::size_t trapezoid) const;
 
   const Layer& layer_;
+  const FeatureTable& features_;
   std::vector<std::uint64_t> edge_hashes_;
   std::vector<std::uint64_t> outlines_;    // by edge, see LayerChanges::Side::outline
   std::vector<std::uint64_t> identities_;  // by row: of attributes, and of ids if they matter
@@ -117,16 +119,15 @@ void Summary::hash_edges() {
 }
 
 void Summary::hash_identities(Ids ids) {
-  const FeatureTable& features = layer_.features();
   std::vector<std::uint64_t> names;
-  for (const Field& field : features.fields())
+  for (const Field& field : features_.fields())
     names.push_back(hash_of(std::string_view(field.name)));
   identities_.reserve(rows());
   for (std::uint32_t row = 0; row < rows(); ++row) {
     SetHash hash;
-    if (ids == Ids::matter) hash.add({static_cast<std::uint64_t>(features.id(row)), 0, 0});
+    if (ids == Ids::matter) hash.add({static_cast<std::uint64_t>(features_.id(row)), 0, 0});
     for (std::size_t i = 0; i < names.size(); ++i) {
-      hash.add({names[i], hash_of(features.value(row, static_cast<int>(i))), 1});
+      hash.add({names[i], hash_of(features_.value(row, static_cast<int>(i))), 1});
     }
     identities_.push_back(hash.digest().low | 1);  // no multiple of it is 0, except that by 2^64
   }
@@ -467,6 +468,12 @@ class TileMarks {
 }  // namespace
 
 LayerChanges changes_between(const Layer& before, const Layer& after, Ids ids) {
+  return changes_between(LayerWithFeatures{before, before.features()},
+                         LayerWithFeatures{after, after.features()}, ids);
+}
+
+LayerChanges changes_between(const LayerWithFeatures& before, const LayerWithFeatures& after,
+                             Ids ids) {
   LayerChanges changes;
   const Summary of_before(before, ids);
   const Summary of_after(after, ids);

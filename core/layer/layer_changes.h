@@ -57,6 +57,15 @@ enum class Ids : bool { do_not_matter, matter };
 /// refers to no ids. The time depends on the sizes of the layers.
 LayerChanges changes_between(const Layer& before, const Layer& after, Ids ids);
 
+/// A layer, and the table of its features, which may be that of another layer: a layer without the
+/// topology test has none of its own.
+struct LayerWithFeatures {
+  const Layer& layer;
+  const FeatureTable& features;
+};
+LayerChanges changes_between(const LayerWithFeatures& before, const LayerWithFeatures& after,
+                             Ids ids);
+
 /// How tiles of one zoom are drawn.
 struct TileDrawing {
   int zoom = 0;

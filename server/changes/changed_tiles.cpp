@@ -144,8 +144,10 @@ class Comparison {
       compared.changes = changes_between(*old.layer, *now.layer, ids);
     }
     if (old.untested != nullptr || now.untested != nullptr) {
-      const auto untested_of = [](const ServedLayer& served) -> const Layer& {
-        return served.untested != nullptr ? *served.untested : *served.layer;
+      // The layer without the topology test has the same rows, but no table of features.
+      const auto untested_of = [](const ServedLayer& served) {
+        return LayerWithFeatures{served.untested != nullptr ? *served.untested : *served.layer,
+                                 served.layer->features()};
       };
       compared.untested = changes_between(untested_of(old), untested_of(now), ids);
     }

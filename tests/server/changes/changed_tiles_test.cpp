@@ -163,6 +163,28 @@ TEST(ChangedTiles, WithOtherLabelsAreListed) {
   EXPECT_THAT(set_of(tiles), ::testing::Contains(std::tuple(2, 2u, 1u)));
 }
 
+TEST(ChangedTiles, WithoutTheTopologyTestAreListed) {
+  const auto land_to = [](const std::string& east) {
+    const TemporaryFolder folder;
+    const std::string file = folder.write(
+        "land.geojson",
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
+        R"({"type":"Polygon","coordinates":[[[1,1],[9,1],[9,9],[1,9],[1,1]]]}},{"type":"Feature",)"
+        R"("properties":{},"geometry":{"type":"Polygon","coordinates":[[[5,5],[)" +
+            east + ",5],[" + east + ",15],[5,15],[5,5]]]}}]}");
+    auto layers = layers_of_files({file});
+    layers[0].fast_topology = true;
+    return Dataset::load(layers);
+  };
+  const auto before = land_to("15");  // the features overlap
+  const auto after = land_to("17");
+  const std::string style = "topology=fast";
+  for (const Certainty certainty : kCertaintyNames.values()) {
+    EXPECT_THAT(changed(style, certainty, before, after), ::testing::Not(::testing::IsEmpty()));
+    EXPECT_THAT(changed(style, certainty, before, before), ::testing::IsEmpty());
+  }
+}
+
 TEST(ChangedTiles, EndAtTheZoomWithTooMany) {
   EditedLand one(3);
   EditedLand other(4);
