@@ -139,7 +139,8 @@ Result<Classifications> classifications_of(const TileJsonRequest& request, const
     found.json[name] = classification_json(*style);
     if (style->classing.joined == nullptr) continue;
     for (const auto& [table, named] : dataset.tables()) {
-      if (named.table.get() != &style->classing.joined->table()) continue;
+      // Not by address: a join that is kept over a reload has the table that was read before it.
+      if (named.table->id() != style->classing.joined->table().id()) continue;
       if (!named.attribution.empty()) found.attributions.push_back(named.attribution);
     }
   }

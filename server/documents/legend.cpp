@@ -192,7 +192,8 @@ std::string title_of_values(const ServedLayer& served, const LayerStyle& style) 
   if (joined == nullptr || !style.origin || style.origin->attribute != kJoinedName) return {};
   if (served.tables != nullptr) {
     for (const auto& [name, named] : *served.tables) {
-      if (named.table.get() == &joined->table() && !named.title.empty()) return named.title;
+      // Not by address: a join that is kept over a reload has the table that was read before it.
+      if (named.table->id() == joined->table().id() && !named.title.empty()) return named.title;
     }
   }
   return joined->table().names().value;

@@ -99,7 +99,8 @@ void add_tiles(Snapshot& snapshot, const ServerFigures& figures) {
   const auto number = [](auto value) { return static_cast<double>(value); };
   snapshot.counter("trapeze_cache_hits_total", "Tiles that were found in the cache",
                    number(figures.cache.hits));
-  snapshot.counter("trapeze_cache_misses_total", "Tiles that were not found in the cache",
+  snapshot.counter("trapeze_cache_misses_total",
+                   "Searches of the cache that found no tile; a request may search twice",
                    number(figures.cache.misses));
   snapshot.gauge("trapeze_cache_bytes", "Memory of the cache that is used",
                  number(figures.cache.bytes));

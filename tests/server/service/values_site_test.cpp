@@ -310,6 +310,23 @@ TEST_F(ValuesSiteTest, ReadsTablesOfTheConfigurationAgain) {
   EXPECT_NE(json("/catalog")["generation"], generation);
 }
 
+TEST_F(ValuesSiteTest, KeepsTitleAndAttributionWhenTheLayerIsNotReadAgain) {
+  ValueTableConfig table;
+  table.file = folder_.write("people.csv", "code,people\nC0,10\nC1,20\n");
+  table.title = "People";
+  table.attribution = "counted by hand";
+  const auto layers = layers_of_files({folder_.write("columns.geojson", columns())});
+  const std::string query = "?values=people&color-by=value&breaks=15&ramp=Reds";
+  for (int load = 0; load < 2; ++load) {
+    sample_.data().set(Dataset::load(layers, sample_.data().get().get(), nullptr,
+                                     read_named_tables({{"people", table}})));
+    EXPECT_EQ(json("/legend/columns.json" + query)["layers"][0]["values_title"], "People") << load;
+    EXPECT_THAT(json("/tiles/columns.json" + query)["attribution"].get<std::string>(),
+                HasSubstr("counted by hand"))
+        << load;
+  }
+}
+
 class SmallValuesSiteTest : public ValuesSiteTest {
  protected:
   SmallValuesSiteTest() : ValuesSiteTest(20'000) {}
