@@ -30,8 +30,8 @@ constexpr double kLeastWidth = 1;     // ems, of lines
 // of the ladder may be used, and the edge is a pixel wide.
 constexpr double kToleranceReach = 1.5;
 constexpr double kEdgePixels = 0.5;
-// The cost of placing a feature, with its anchor and the width of its text.
-constexpr std::uint64_t kSidesPerFeature = 60;
+// The cost of placing a label, with its anchor and the width of its text.
+constexpr std::uint64_t kSidesPerLabel = 60;
 constexpr std::size_t kImageBudget = std::size_t{48} << 20;
 
 double slack_of(std::span<const LabelledLayer> layers) {
@@ -221,7 +221,7 @@ class LabelBook::Placing {
 };
 
 LabelBook::LabelBook(FontChoice fonts, std::size_t budget)
-    : fonts_(std::move(fonts)), kept_(budget), images_(kImageBudget) {}
+    : fonts_(std::move(fonts)), kept_(budget), anchors_(budget), images_(kImageBudget) {}
 
 LabelBook::~LabelBook() = default;
 
@@ -236,31 +236,31 @@ std::string LabelBook::identity_of_fonts() const {
   return text;
 }
 
-std::shared_ptr<LabelBook::Entry> LabelBook::entry(const std::string& key) {
+std::shared_ptr<LabelBook::Entry> LabelBook::entry(Entries& entries, const std::string& key) {
   const std::lock_guard lock(mutex_);
-  if (auto* found = kept_.find(key)) return *found;
-  return kept_.insert(key, std::make_shared<Entry>(), key.size());
+  if (auto* found = entries.find(key)) return *found;
+  return entries.insert(key, std::make_shared<Entry>(), key.size());
 }
 
 // The entry counts with its size from the time that it is known.
-void LabelBook::set_size(const std::string& key, std::shared_ptr<Entry> entry, std::size_t bytes) {
+void LabelBook::set_size(Entries& entries, const std::string& key, std::shared_ptr<Entry> entry,
+                         std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  kept_.erase(key);
-  kept_.insert(key, std::move(entry), key.size() + bytes);
+  entries.erase(key);
+  entries.insert(key, std::move(entry), key.size() + bytes);
 }
 
 std::shared_ptr<const LabelAnchors> LabelBook::anchors_of(const ServedLayer& served,
                                                           LabelParts parts) {
-  const std::string key =
-      fmt::format("anchors {:016x} {}", served.revision, static_cast<int>(parts));
-  const auto entry = this->entry(key);
+  const std::string key = fmt::format("{:016x} {}", served.revision, static_cast<int>(parts));
+  const auto entry = this->entry(anchors_, key);
   std::call_once(entry->once, [&] {
     const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
     const bool are_known = !served.label_anchors.empty() && served.whole == nullptr;
     entry->anchors = are_known
                          ? std::make_shared<const LabelAnchors>(served.label_anchors, parts)
                          : std::make_shared<const LabelAnchors>(*served.layer, parts, threads);
-    set_size(key, entry, entry->anchors->memory());
+    set_size(anchors_, key, entry, entry->anchors->memory());
   });
   return entry->anchors;
 }
@@ -278,10 +278,10 @@ std::string LabelBook::key_of(const LabelledView& wanted) {
 
 std::shared_ptr<const LabelBook::Placed> LabelBook::placed(const LabelledView& wanted) {
   const std::string key = key_of(wanted);
-  const auto entry = this->entry(key);
+  const auto entry = this->entry(kept_, key);
   std::call_once(entry->once, [&] {
     entry->placed = Placing(*this, wanted).place();
-    set_size(key, entry,
+    set_size(kept_, key, entry,
              entry->placed->placement.memory() +
                  entry->placed->sources.capacity() * sizeof(Placed::Source));
     entry->is_made = true;
@@ -295,11 +295,14 @@ std::uint64_t LabelBook::cost_of(const LabelledView& wanted) const {
     const std::lock_guard lock(mutex_);
     if (kept_.find(key_of(wanted)) != nullptr) return 0;
   }
-  std::uint64_t features = 0;
+  std::uint64_t labels = 0;
   for (const LabelledLayer& layer : wanted.layers) {
-    features += wanted.dataset.layers_on_all_grids()[layer.layer].layer->features().size();
+    const ServedLayer& served = wanted.dataset.layers_on_all_grids()[layer.layer];
+    const std::size_t features = served.layer->features().size();
+    // A few features may have thousands of parts, such as countries with islands.
+    labels += layer.style->all_parts ? std::max(features, served.report.polygons) : features;
   }
-  return features * kSidesPerFeature;
+  return labels * kSidesPerLabel;
 }
 
 bool LabelBook::has_placed(const LabelledView& wanted) const {
@@ -427,7 +430,7 @@ bool LabelBook::is_any_from(const LabelledView& wanted) {
 
 std::size_t LabelBook::memory() const {
   const std::lock_guard lock(mutex_);
-  return kept_.bytes() + images_.bytes();
+  return kept_.bytes() + anchors_.bytes() + images_.bytes();
 }
 
 }  // namespace trapeze

@@ -128,11 +128,14 @@ class LabelBook {
   struct Entry;
   class Placing;
 
+  using Entries = LruMap<std::string, std::shared_ptr<Entry>>;
+
   static std::string key_of(const LabelledView& wanted);
   std::shared_ptr<const Placed> placed(const LabelledView& wanted);
   std::shared_ptr<const LabelAnchors> anchors_of(const ServedLayer& served, LabelParts parts);
-  std::shared_ptr<Entry> entry(const std::string& key);
-  void set_size(const std::string& key, std::shared_ptr<Entry> entry, std::size_t bytes);
+  std::shared_ptr<Entry> entry(Entries& entries, const std::string& key);
+  void set_size(Entries& entries, const std::string& key, std::shared_ptr<Entry> entry,
+                std::size_t bytes);
   /// The size of a text.
   struct Room {
     double width = 0;   // pixels, without halo
@@ -146,7 +149,10 @@ class LabelBook {
 
   const FontChoice fonts_;
   mutable std::mutex mutex_;  // guards everything below
-  mutable LruMap<std::string, std::shared_ptr<Entry>> kept_;
+  mutable Entries kept_;
+  // Apart from the placements: finding anchors takes many times as long as placing labels, and
+  // styles, which anybody can make up, must not displace them.
+  Entries anchors_;
   LruMap<std::string, std::shared_ptr<const LabelImage>> images_;
   std::map<const Fonts*, std::string> identities_;
 };

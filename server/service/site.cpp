@@ -793,7 +793,8 @@ void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Datase
     order.may_be_known = false;
   }
   const std::uint64_t most = options_.tile_cost == 0 ? kNoLimit : options_.tile_cost;
-  const std::uint64_t cost = drawing_cost(plan) + tiles_.cost_of_labels(plan);
+  const std::uint64_t cost_to_identify = drawing_cost(plan) + tiles_.cost_of_labels(plan);
+  const std::uint64_t cost = cost_to_identify + encoding_cost(plan);
   if (cost > most) return respond(problem_response(too_dear(most)));
   if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
   if (cost > defaults::kDearTile) order.cost = TileService::Cost::dear;
@@ -819,7 +820,9 @@ void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Datase
   }
   // A client that has a version of the tile usually has the current one.
   if (holds && order.may_be_known) {
-    if (const auto answer = tiles_.answer_at_once(plan, cost, holds)) return answer_with(*answer);
+    if (const auto answer = tiles_.answer_at_once(plan, cost_to_identify, holds)) {
+      return answer_with(*answer);
+    }
   }
   order.plan = std::move(plan);
   const auto ticket = tiles_.submit(std::move(order), std::move(answer_with), std::move(holds));

@@ -153,4 +153,8 @@ std::uint64_t drawing_cost(const TilePlan& plan) {
   return cost;
 }
 
+std::uint64_t encoding_cost(const TilePlan& plan) {
+  return plan.format == TileFormat::webp ? pixels_of(plan.view) * kSidesPerWebpPixel : 0;
+}
+
 }  // namespace trapeze

@@ -24,10 +24,15 @@ constexpr std::uint64_t kSidesPerPartSeenThrough = 64;
 constexpr std::uint64_t kSidesPerProjectedTrapezoid = 2;  // in plate carree
 constexpr std::uint64_t kSidesPerMarkedTrapezoid = 32;    // for debug=mesh and similar
 constexpr std::uint64_t kSidesPerMarkedPixel = 1;         // drawn one by one, not as runs
+constexpr std::uint64_t kSidesPerWebpPixel = 1;           // flat ones take less, patterns twice
 
 /// An estimate from the indexes alone, see MeshIndex::estimate(): takes microseconds for most
 /// tiles, milliseconds for millions of trapezoids. Never lower for a picture that shows more or has
 /// wider lines.
 std::uint64_t drawing_cost(const TilePlan& plan);
+
+/// The cost of encoding the picture, apart from what drawing_cost() counts for its pixels. PNG
+/// takes runs of equal pixels and costs next to nothing.
+std::uint64_t encoding_cost(const TilePlan& plan);
 
 }  // namespace trapeze

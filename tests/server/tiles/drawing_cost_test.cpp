@@ -43,5 +43,10 @@ TEST_F(DrawingCostTest, IsThatOfTheSidesAndThePixelsOfAPlainTile) {
   EXPECT_EQ(drawing_cost(tile), sides + 2 * 256 * 256 / kPixelsPerSide);
 }
 
+TEST_F(DrawingCostTest, EncodingCostsSomethingForWebp) {
+  EXPECT_EQ(encoding_cost(plan("rings/0/0/0@2x.png")), 0u);
+  EXPECT_EQ(encoding_cost(plan("rings/0/0/0@2x.webp")), 512u * 512 * kSidesPerWebpPixel);
+}
+
 }  // namespace
 }  // namespace trapeze

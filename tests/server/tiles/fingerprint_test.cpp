@@ -155,7 +155,7 @@ TEST_P(FingerprintTest, EmptyTilesAndFullOnesAreAllAlike) {
 }
 
 TEST_P(FingerprintTest, LinesThatPassByDoNotMatter) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const std::string triangle = folder.write("land.geojson", R"({"type": "Polygon", "coordinates":
       [[[0, 0], [40, 0], [0, 40], [0, 0]]]})");
   const auto dataset = Dataset::load(layers_of_files({triangle}));
