@@ -29,7 +29,6 @@ const PAGE = [
   "demonstrations.js",
   "detail_panel.js",
   "elements.js",
-  "exact_json.js",
   "feature_choice.js",
   "feature_panel.js",
   "layer_list.js",

@@ -1,6 +1,5 @@
 // The values of an attribute, as counted by the server for the current view or a whole layer.
 
-import { parse_exactly } from "./exact_json.js";
 import { query_part } from "./tile_query.js";
 
 /**
@@ -19,4 +18,12 @@ export async function ask_values(base, layer, attribute, box, style) {
     values: Array.isArray(told?.values) ? told.values : [],
     quantiles: Array.isArray(told?.quantiles) ? told.quantiles.map(Number).filter(Number.isFinite) : [],
   };
+}
+
+const TEXT_OR_NUMBER = /"(?:[^"\\]|\\.)*"|-?\d[\d.eE+-]*/g;
+
+/** Like JSON.parse(), but integers that a number cannot hold exactly become strings. */
+export function parse_exactly(text) {
+  return JSON.parse(text.replaceAll(TEXT_OR_NUMBER, (found) =>
+    (/^-?\d{16,}$/.test(found) && !Number.isSafeInteger(Number(found)) ? `"${found}"` : found)));
 }

@@ -1,7 +1,7 @@
 // The features at a place with their attributes, one of them selected.
 
+import { parse_exactly } from "./attribute_values.js";
 import { button, element } from "./elements.js";
-import { parse_exactly } from "./exact_json.js";
 import { tile_requests } from "./tile_requests.js";
 
 /**

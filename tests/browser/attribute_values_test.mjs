@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { parse_exactly } from "../../web/exact_json.js";
+import { parse_exactly } from "../../web/attribute_values.js";
 
 test("only integers that a number cannot hold become strings", () => {
   const same = String.raw`{"a": [0, -1, 9007199254740991, 1.2345678901234567, 1e+300, true, null],
