@@ -39,9 +39,14 @@ class NumberedRows {
  public:
   template <typename Read>
   NumberedRows(const ValueTable& table, Read read) {
+    std::string with_point;
     for (std::uint32_t row = 0; row < table.size(); ++row) {
-      std::string key(table.key(row));
-      if (table.has_decimal_commas()) std::ranges::replace(key, ',', '.');
+      std::string_view key = table.key(row);
+      if (table.has_decimal_commas()) {
+        with_point = key;
+        std::ranges::replace(with_point, ',', '.');
+        key = with_point;
+      }
       if (const std::optional<Number> number = read(key)) rows_.emplace_back(*number, row);
     }
     std::ranges::sort(rows_);
