@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,6 +16,7 @@
 #include "server/data/layer_summary.h"
 #include "server/documents/place_text.h"
 #include "server/tiles/layer_style.h"
+#include "server/values/attributes.h"
 
 namespace trapeze {
 namespace {
@@ -67,13 +67,6 @@ std::vector<bool> rows_in(const Layer& layer, const Boxes& boxes) {
 bool holds(const Box& outer, const Box& inner) {
   return outer.min_x <= inner.min_x && outer.min_y <= inner.min_y && outer.max_x >= inner.max_x &&
          outer.max_y >= inner.max_y;
-}
-
-/// Null if there is no value, or a number that is not finite.
-Value value_of(const FeatureTable& features, std::uint32_t row, int field) {
-  const Value value = features.value(row, field);
-  const auto* real = std::get_if<double>(&value);
-  return real != nullptr && !std::isfinite(*real) ? Value() : value;
 }
 
 /// How often each value occurs, and how many features have none.
@@ -136,10 +129,11 @@ void count_values(const Layer& layer, const LayerStyle& style, int field, const 
   const std::vector<bool> rows = is_part ? rows_in(layer, boxes) : std::vector<bool>();
   const Classing classing = style.classing.over(layer.features());
   const FeatureClassifier classifier(classing, layer.features());
+  const Attributes attributes(layer.features());
   for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
     if (layer.is_removed(row) || (is_part && !rows[row])) continue;
     if (classifier.class_of(row) == kNotDrawn) continue;
-    counts.add(value_of(layer.features(), row, field));
+    counts.add(attributes.value(row, field));
   }
 }
 
