@@ -34,6 +34,12 @@ class Canvas {
   std::uint64_t touched(int begin, int end) const {
     return touched_.bits_of(static_cast<std::size_t>(begin), static_cast<std::size_t>(end) - 1);
   }
+  /// Calls act(begin, end) for columns of a row that include all written ones, in order.
+  template <typename Act>
+  void for_each_written(int row, const Act& act) const {
+    for_each_touched(touched_.of(static_cast<std::size_t>(row)), touched_.shift(),
+                     static_cast<std::size_t>(width_), act);
+  }
   /// Finishes the mask.
   void finish(Mask& mask);
 

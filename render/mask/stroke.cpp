@@ -23,7 +23,9 @@ constexpr double kLeastHalfOfNearest = 2;
 constexpr double kLeastPeriod = 1.0 / 8;
 constexpr double kLeastRate = 1.0 / 16;  // of the growth of a dashed line
 constexpr int kBlock = 4;                // columns drawn at the same time
-constexpr std::size_t kMostBandPixels = std::size_t{1} << 21;
+constexpr std::size_t kMostBandPixels = std::size_t{1} << 20;
+// From this value on, it makes no difference what several lines cover together.
+constexpr std::uint8_t kNearlyFull = 240;
 
 // Adjacent pixels, using the vector extensions of g++ and clang.
 using Floats __attribute__((vector_size(kBlock * sizeof(float)))) = float;
@@ -73,6 +75,10 @@ struct Slab {
     max = std::min(max, std::max(a, b));
   }
 };
+
+int rows_of_band(int width) {
+  return std::max(1, static_cast<int>(kMostBandPixels / static_cast<std::size_t>(width)));
+}
 
 /// Identifies a place, except for a probability of 2^-64 for each pair of places.
 std::uint64_t number_of(const PicturePlace& place) {
@@ -126,11 +132,16 @@ Stroker::Line Stroker::Line::between(PicturePlace new_from, PicturePlace new_to)
 // A line's width and dashes, in pixels of one picture.
 class Stroker::Pen {
  public:
-  Pen(const Stroke& stroke, double scale, Canvas& canvas)
+  Pen(const Stroke& stroke, double scale, const std::vector<Line>& lines, Canvas& canvas,
+      SharedPixels& shared, std::vector<std::uint8_t>& directions)
       : half_(stroke.width * scale / 2),
         most_(std::min(1.0f, static_cast<float>(2 * half_))),
         join_(stroke.join),
-        canvas_(canvas) {
+        lines_(lines),
+        canvas_(canvas),
+        shared_(shared),
+        directions_(directions),
+        band_{0, canvas.height()} {
     if (!stroke.is_dashed()) return;
     for (std::size_t i = 0; i + 1 < stroke.dashes.size(); i += 2) {
       const Dash dash{period_, stroke.dashes[i] * scale};
@@ -149,15 +160,19 @@ class Stroker::Pen {
   double reach() const { return half_ + 0.5; }
   bool has_round_ends() const { return join_ == LineJoin::round; }
   std::uint64_t values() const { return values_; }
+  // What is drawn from now on is cut to these rows.
+  void begin_band(Rows band) { band_ = band; }
 
   // With round ends, so that lines that meet need no join.
-  void draw_round_line(const Line& line) {
+  void draw_round_line(std::uint32_t number) {
+    const Line& line = lines_[number];
     const auto [west, east] = std::minmax(line.from.x, line.to.x);
     const auto [north, south] = std::minmax(line.from.y, line.to.y);
-    const Columns rows = columns_between(north - reach(), south + reach(), canvas_.height());
+    const Rows rows = rows_between(north - reach(), south + reach());
     const Columns columns = columns_between(west - reach(), east + reach(), canvas_.width());
-    if (rows.is_empty() || columns.is_empty()) return;
-    const RoundLine round(line, *this);
+    if (rows.begin >= rows.end || columns.is_empty()) return;
+    note_direction(number);
+    const RoundLine round(number, *this);
     if (columns.end - columns.begin <= 2 * kBlock) {
       const Blocks blocks(columns, canvas_);
       for (int row = rows.begin; row < rows.end; ++row) draw_round_row(round, row, blocks);
@@ -176,10 +191,12 @@ class Stroker::Pen {
   }
 
   // The ends are cut off at right angles.
-  void draw_line(const Line& line) {
+  void draw_line(std::uint32_t number) {
+    const Line& line = lines_[number];
     const double top = std::min(line.from.y, line.to.y) - reach();
     const double bottom = std::max(line.from.y, line.to.y) + reach();
-    const Columns rows = columns_between(top, bottom, canvas_.height());
+    const Rows rows = rows_between(top, bottom);
+    note_direction(number);
     const Slab beside(line.dx, -kOverlap, line.length + kOverlap);
     const Slab near(line.dy, -reach(), reach());
     for (int row = rows.begin; row < rows.end; ++row) {
@@ -188,7 +205,7 @@ class Stroker::Pen {
       double max = canvas_.width() - line.from.x;
       beside.narrow(y * line.dy, min, max);
       near.narrow(-y * line.dx, min, max);
-      if (min <= max) draw_row(line, row, y, min + line.from.x, max + line.from.x);
+      if (min <= max) draw_row(number, row, y, min + line.from.x, max + line.from.x);
     }
   }
 
@@ -245,6 +262,15 @@ class Stroker::Pen {
 
   static Floats in_block(float number) { return Floats{} + number; }
 
+  Rows rows_between(double min, double max) const {
+    const Columns rows = columns_between(min, max, canvas_.height());
+    return {std::max(rows.begin, band_.begin), std::min(rows.end, band_.end)};
+  }
+  std::size_t place_of(int row, int column) const {
+    return static_cast<std::size_t>(row - band_.begin) * static_cast<std::size_t>(canvas_.width()) +
+           static_cast<std::size_t>(column);
+  }
+
   static double half_pixel_along(const Line& line) {
     return std::max(std::abs(line.rate), kLeastRate) / 2;
   }
@@ -274,16 +300,18 @@ class Stroker::Pen {
 
   // A line with round ends, with values that are the same for all blocks of pixels.
   struct RoundLine {
-    RoundLine(const Line& of, const Pen& pen)
-        : line(of),
-          steps_along(kSteps * static_cast<float>(of.dx)),
-          steps_off(kSteps * static_cast<float>(of.dy)),
+    RoundLine(std::uint32_t of, const Pen& pen)
+        : number(of),
+          line(pen.lines_[of]),
+          steps_along(kSteps * static_cast<float>(line.dx)),
+          steps_off(kSteps * static_cast<float>(line.dy)),
           reach(in_block(static_cast<float>(pen.reach()))),
           most(in_block(pen.most_)),
-          ink_255(in_block(of.ink * 255)),
-          rate(in_block(static_cast<float>(of.rate))),
-          half_pixel(in_block(static_cast<float>(half_pixel_along(of)))) {}
+          ink_255(in_block(line.ink * 255)),
+          rate(in_block(static_cast<float>(line.rate))),
+          half_pixel(in_block(static_cast<float>(half_pixel_along(line)))) {}
 
+    std::uint32_t number;
     const Line& line;
     Floats steps_along;
     Floats steps_off;
@@ -332,7 +360,9 @@ class Stroker::Pen {
       Floats values = values_of_block(round, beyond, beside_of_row - x * line.dy);
       if (are_none(values)) continue;
       if (!dashes_.empty()) values *= dash_shares(round, along, beyond);
-      cover(values, out + begin);
+      constexpr Floats kNone{};
+      const Ints is_beside = (beyond.before <= kNone) & (beyond.behind <= kNone);
+      cover(values, is_beside, round.number, row, begin, out + begin);
     }
   }
 
@@ -347,8 +377,9 @@ class Stroker::Pen {
     return round.ink_255 * (share < round.most ? share : round.most);
   }
 
-  // For non-negative values.
-  static bool are_none(Floats values) {
+  // For values that are not negative, or masks.
+  template <typename Block>
+  static bool are_none(const Block& values) {
     std::uint64_t bits[2];
     static_assert(sizeof bits == sizeof values);
     std::memcpy(bits, &values, sizeof values);
@@ -391,23 +422,88 @@ class Stroker::Pen {
     return inked;
   }
 
-  void cover(Floats values, std::uint8_t* out) const {
+  // Adjacent pixels of a row, from a column on, and which of them are beside the line, not beyond
+  // its ends: only these are shared with other lines, as the next line of an outline covers the
+  // others.
+  void cover(Floats values, Ints is_beside, std::uint32_t number, int row, int column,
+             std::uint8_t* out) {
+    std::uint32_t* const known = shared_.known() + place_of(row, column);
+    Ints is_another{};
+    if (canvas_.width() >= kBlock) {
+      is_another = cover<kBlock>(values, is_beside, number, out, known);
+    } else if (canvas_.width() == 3) {
+      is_another = cover<3>(values, is_beside, number, out, known);
+    } else if (canvas_.width() == 2) {
+      is_another = cover<2>(values, is_beside, number, out, known);
+    } else {
+      is_another = cover<1>(values, is_beside, number, out, known);
+    }
+    if (are_none(is_another)) return;
+    for (int i = 0; i < kBlock; ++i) {
+      if (is_another[i] != 0) share(number, row, column + i, out[i]);
+    }
+  }
+
+  // The first pixels of a block. Returns which of them another line covers already.
+  template <std::size_t count>
+  static Ints cover(Floats values, Ints is_beside, std::uint32_t number, std::uint8_t* out,
+                    std::uint32_t* known) {
     const auto rounded = __builtin_convertvector(values + 0.5f, Ints);
     const auto narrow = __builtin_convertvector(rounded, Shorts);
     const auto bytes = __builtin_convertvector(narrow, Bytes);
-    if (canvas_.width() < kBlock)
-      return cover(bytes, out, static_cast<std::size_t>(canvas_.width()));
-    cover(bytes, out, kBlock);
-  }
-
-  static void cover(Bytes values, std::uint8_t* out, std::size_t count) {
     Bytes before{};
     std::memcpy(&before, out, count);
-    const Bytes greater = values > before ? values : before;
+    const Bytes greater = bytes > before ? bytes : before;
     std::memcpy(out, &greater, count);
+    const Ints is_covered = is_beside & (rounded > 0);
+    if (are_none(is_covered)) return is_covered;
+    Ints numbers{};
+    std::memcpy(&numbers, known, count * sizeof *known);
+    const Ints is_first = is_covered & (numbers == 0);
+    numbers |= is_first & static_cast<std::int32_t>(number + 1);
+    std::memcpy(known, &numbers, count * sizeof *known);
+    Ints within{};
+    for (std::size_t i = 0; i < count; ++i) within[i] = -1;
+    return is_covered & ~is_first & within;
   }
 
-  void draw_row(const Line& line, int row, double y, double west, double east) {
+  // A pixel that another line covers already.
+  void share(std::uint32_t number, int row, int column, std::uint8_t value) {
+    if (value >= kNearlyFull) return;
+    const double x = column + 0.5;
+    const double y = row + 0.5;
+    shared_.add(
+        place_of(row, column), number + 1,
+        [&](std::uint32_t known) { return samples(known - 1, x, y); },
+        [&](std::uint32_t known) { return ink(lines_[known - 1], x, y); });
+  }
+
+  void note_direction(std::uint32_t number) {
+    const Line& line = lines_[number];
+    directions_[number] = static_cast<std::uint8_t>(HalfPlanes::direction_of(line.dx, line.dy));
+  }
+
+  std::uint64_t samples(std::uint32_t number, double x, double y) const {
+    const Line& line = lines_[number];
+    const SampledLine sampled{static_cast<float>(line.from.x - x),
+                              static_cast<float>(line.from.y - y),
+                              static_cast<float>(line.dx),
+                              static_cast<float>(line.dy),
+                              directions_[number],
+                              static_cast<float>(line.length),
+                              static_cast<float>(half_),
+                              has_round_ends()};
+    return sampled.samples(half_planes_);
+  }
+
+  std::uint8_t ink(const Line& line, double x, double y) const {
+    if (dashes_.empty()) return to_value(line.ink);
+    const double along = (x - line.from.x) * line.dx + (y - line.from.y) * line.dy;
+    return to_value(line.ink * dash_share(line, std::clamp(along, 0.0, line.length)));
+  }
+
+  void draw_row(std::uint32_t number, int row, double y, double west, double east) {
+    const Line& line = lines_[number];
     const Columns columns = columns_between(west, east, canvas_.width());
     values_ += static_cast<std::uint64_t>(columns.end - columns.begin);
     if (columns.is_empty()) return;
@@ -419,17 +515,25 @@ class Stroker::Pen {
       const int i = column - columns.begin;
       float share = line.ink * across(std::abs(offset + static_cast<float>(i) * step));
       if (!dashes_.empty()) share *= dash_share(line, (x + i) * line.dx + y * line.dy);
-      out[column] = std::max(out[column], to_value(share));
+      const std::uint8_t value = to_value(share);
+      if (value == 0) continue;
+      out[column] = std::max(out[column], value);
+      std::uint32_t& known = shared_.known()[place_of(row, column)];
+      if (known == 0) {
+        known = number + 1;
+      } else {
+        this->share(number, row, column, out[column]);
+      }
     }
   }
 
   template <typename ShareAt>
   void for_each_pixel_around(PicturePlace centre, double radius, const ShareAt& share_at) {
-    const Columns rows = columns_between(centre.y - radius, centre.y + radius, canvas_.height());
+    const Rows rows = rows_between(centre.y - radius, centre.y + radius);
     const Columns columns = columns_between(centre.x - radius, centre.x + radius, canvas_.width());
+    if (rows.begin >= rows.end || columns.is_empty()) return;
     values_ += static_cast<std::uint64_t>(rows.end - rows.begin) *
                static_cast<std::uint64_t>(columns.end - columns.begin);
-    if (columns.is_empty()) return;
     for (int row = rows.begin; row < rows.end; ++row) {
       std::uint8_t* out = canvas_.row(row, columns.begin, columns.end);
       for (int column = columns.begin; column < columns.end; ++column) {
@@ -450,7 +554,12 @@ class Stroker::Pen {
   Floats period_of_blocks_{};
   Floats periods_per_pixel_{};
   Floats inked_of_blocks_{};
+  const std::vector<Line>& lines_;
   Canvas& canvas_;
+  SharedPixels& shared_;
+  std::vector<std::uint8_t>& directions_;  // of lines, numbers of HalfPlanes
+  const HalfPlanes& half_planes_ = HalfPlanes::table();
+  Rows band_;
   std::uint64_t values_ = 0;  // computed so far
 };
 
@@ -458,16 +567,18 @@ void Stroker::begin(const View& view, double scale) {
   view_ = view;
   scale_ = scale;
   canvas_.begin(view.width, view.height);
+  lines_.clear();
+  ends_.clear();
+  vertices_ = 0;
+  length_of_lines_ = 0;
 }
 
 void Stroker::finish(Mask& mask) {
   canvas_.finish(mask);
 }
 
-void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-                   const Stroke& stroke, const Cancellation* cancellation) {
-  measure(vertices, edges);
-  Pen pen(stroke, scale_, canvas_);
+void Stroker::draw(const Stroke& stroke, const Cancellation* cancellation) {
+  Pen pen(stroke, scale_, lines_, canvas_, shared_, directions_);
   const double most = static_cast<double>(kCrowd) * view_.width * view_.height;
   const bool is_crowded = most_values_of_lines(pen) > most && values_of_lines(pen) > most;
   // Drawn one by one, lines with round ends may be in any order.
@@ -481,7 +592,7 @@ void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge>
   }
 }
 
-void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges) {
+void Stroker::add(std::span<const Point> vertices, std::span<const OutlineEdge> edges) {
   const double columns_per_cell = 1 / view_.cells_per_pixel;
   const double rows_per_cell = 1 / view_.cells_per_row();
   const auto place_of = [&](std::uint32_t vertex) {
@@ -490,9 +601,6 @@ void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEd
         static_cast<double>(p.x - view_.origin_x) * columns_per_cell,
         static_cast<double>(p.y - view_.origin_y) * rows_per_cell - view_.first_row};
   };
-  lines_.clear();
-  ends_.clear();
-  length_of_lines_ = 0;
   for (const OutlineEdge& edge : edges) {
     const Line line{
         {}, {}, 0, 0, 0, edge.along * columns_per_cell, edge.rate, static_cast<float>(edge.ink)};
@@ -504,9 +612,10 @@ void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEd
           std::hypot(static_cast<double>(to.x) - from.x, static_cast<double>(to.y) - from.y);
       lines_.back().rate *= cells * columns_per_cell / lines_.back().length;
     }
-    ends_.push_back({edge.from, edge.to});
+    ends_.push_back({vertices_ + edge.from, vertices_ + edge.to});
     length_of_lines_ += lines_.back().length;
   }
+  vertices_ += vertices.size();
 }
 
 void Stroker::sort_lines() {
@@ -582,18 +691,49 @@ void Stroker::merge_lines() {
   ends_.resize(order.size());
 }
 
+// In bands of rows, to bound memory.
 void Stroker::draw_each(Pen& pen, const Cancellation* cancellation) {
   CancellationCheck check(cancellation, 64);
-  for (const Line& line : lines_) {
+  directions_.resize(lines_.size());
+  const int most_rows = std::min(rows_of_band(canvas_.width()), canvas_.height());
+  for (int first = 0; first < canvas_.height(); first += most_rows) {
+    const Rows band{first, std::min(first + most_rows, canvas_.height())};
+    shared_.begin(static_cast<std::size_t>(most_rows) * static_cast<std::size_t>(canvas_.width()));
+    pen.begin_band(band);
+    draw_band(pen, check);
+    darken_shared(band);
+  }
+  values_ = pen.values();
+}
+
+void Stroker::draw_band(Pen& pen, CancellationCheck& check) {
+  for (std::uint32_t i = 0; i < lines_.size(); ++i) {
     check();
     if (pen.has_round_ends()) {
-      pen.draw_round_line(line);
+      pen.draw_round_line(i);
     } else {
-      pen.draw_line(line);
+      pen.draw_line(i);
     }
   }
   if (!pen.has_round_ends()) join_lines(pen, check);
-  values_ = pen.values();
+}
+
+// Applies what several lines cover together.
+void Stroker::darken_shared(Rows band) {
+  const auto width = static_cast<std::size_t>(canvas_.width());
+  shared_.for_each([&](std::size_t place, std::uint8_t value) {
+    const int column = static_cast<int>(place % width);
+    std::uint8_t& out =
+        canvas_.row(band.begin + static_cast<int>(place / width), column, column + 1)[column];
+    if (out < kNearlyFull) out = std::max(out, value);
+  });
+  for (int row = band.begin; row < band.end; ++row) {
+    canvas_.for_each_written(row, [&](std::size_t begin, std::size_t end) {
+      const std::size_t first = static_cast<std::size_t>(row - band.begin) * width;
+      shared_.forget(first + begin, first + end);
+    });
+  }
+  shared_.finish();
 }
 
 void Stroker::join_lines(Pen& pen, CancellationCheck& check) {
@@ -639,8 +779,7 @@ void Stroker::draw_nearest(const Pen& pen, const Cancellation* cancellation) {
   values_ = 0;
   CancellationCheck check(cancellation, 1024);
   const std::vector<std::uint32_t> order = by_ink();
-  const int most_rows =
-      std::max(1, static_cast<int>(kMostBandPixels / static_cast<std::size_t>(canvas_.width())));
+  const int most_rows = rows_of_band(canvas_.width());
   for (int first = 0; first < canvas_.height(); first += most_rows) {
     const int rows = std::min(most_rows, canvas_.height() - first);
     field_.begin(canvas_.width(), rows, pen.reach());

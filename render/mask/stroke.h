@@ -1,10 +1,12 @@
 // Outlines: lines along the edges of polygons, drawn by distance from the edge.
 //
 // The value of a pixel is the share of a segment one pixel long, across the line and centred on the
-// pixel, that is within the width of the line, times the share of ink given for the edge; if
-// several edges are near, the greatest value counts. So a line is not darker where edges meet.
-// Outlines are always drawn on the CPU, and are the same with any renderer for the fill. They do
-// not depend on the order of the edges.
+// pixel, that is within the width of the line, times the share of ink given for the edge. If
+// several edges are near, the greatest value counts, or, if that is more, the share of the pixel
+// that they cover together, by sample points, with the least of their inks (see shared_pixels.h).
+// So a line is not darker where edges meet, and lines closer together than they are wide cover what
+// they should. Outlines are always drawn on the CPU, and are the same with any renderer for the
+// fill. They do not depend on the order of the edges.
 //
 // The outline of a ring that is hardly larger than the line is wide would be a dot as wide as the
 // line, and thousands of such rings would make the map black. Its ink should therefore be set with
@@ -30,6 +32,7 @@
 #include "render/mask/canvas.h"
 #include "render/mask/mask.h"
 #include "render/mask/outline_field.h"
+#include "render/mask/shared_pixels.h"
 
 namespace trapeze {
 
@@ -76,8 +79,8 @@ struct OutlineEdge {
   double ink = 1;          // from 0 to 1: a factor for its values
 };
 
-/// Draws outlines, with working memory that is kept from one mask to the next. One thread at a
-/// time.
+/// Draws outlines, with working memory that is kept from one mask to the next: begin(), then add()
+/// for all edges, draw() and finish(). One thread at a time.
 class Stroker {
  public:
   /// The average number of values computed per pixel above which a picture counts as crowded.
@@ -85,11 +88,11 @@ class Stroker {
 
   /// Starts a picture of that view and scale, without lines.
   void begin(const View& view, double scale);
-  /// Draws lines along the edges: each value becomes the greater of its previous value and the
-  /// coverage by the lines. Each edge must be given only once; edges that share a vertex are joined
-  /// there. Throws Cancelled.
-  void draw(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-            const Stroke& stroke, const Cancellation* cancellation = nullptr);
+  /// Adds edges between vertices. Each edge must be added only once; edges added together that
+  /// share a vertex are joined there.
+  void add(std::span<const Point> vertices, std::span<const OutlineEdge> edges);
+  /// Draws lines along all edges that were added. Throws Cancelled.
+  void draw(const Stroke& stroke, const Cancellation* cancellation = nullptr);
   /// Finishes the picture.
   void finish(Mask& mask);
 
@@ -112,7 +115,7 @@ class Stroker {
     /// The same line with other ends.
     Line between(PicturePlace new_from, PicturePlace new_to) const;
   };
-  // Numbers that identify the ends of a line.
+  // Numbers that identify the ends of a line among all that were added.
   struct Ends {
     std::uint64_t from;
     std::uint64_t to;
@@ -124,14 +127,19 @@ class Stroker {
     std::uint16_t count = 0;  // number of lines found there
     bool is_end = false;      // whether it is the end of the first line, not its beginning
   };
+  struct Rows {
+    int begin;
+    int end;
+  };
   class Pen;
 
-  void measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges);
   void sort_lines();
   double most_values_of_lines(const Pen& pen) const;
   double values_of_lines(const Pen& pen) const;
   void merge_lines();
   void draw_each(Pen& pen, const Cancellation* cancellation);
+  void draw_band(Pen& pen, CancellationCheck& check);
+  void darken_shared(Rows band);
   void join_lines(Pen& pen, CancellationCheck& check);
   void meet(std::uint64_t place, std::uint32_t line, bool is_end, Pen& pen);
   Line leaving(std::uint32_t line, bool is_end) const;
@@ -142,9 +150,12 @@ class Stroker {
   double scale_ = 1;
   Canvas canvas_;
   std::vector<Line> lines_;
-  std::vector<Ends> ends_;  // by line
+  std::vector<Ends> ends_;      // by line
+  std::uint64_t vertices_ = 0;  // number of those that were added
   double length_of_lines_ = 0;
-  std::vector<Meeting> meet_;  // by place, open addressing
+  std::vector<Meeting> meet_;             // by place, open addressing
+  std::vector<std::uint8_t> directions_;  // by line: numbers of HalfPlanes
+  SharedPixels shared_;                   // of a band of rows
   OutlineField field_;
   std::uint64_t values_ = 0;
 };

@@ -44,6 +44,8 @@ class TouchedColumns {
     const std::uint64_t to_last = ~std::uint64_t{0} >> (63 - (last >> shift_));
     return from_first & to_last;
   }
+  /// The bits of a row; see for_each_touched().
+  std::uint64_t of(std::size_t row) const { return by_row_[row]; }
   /// Returns the bits of a row and clears them; see for_each_touched().
   std::uint64_t take(std::size_t row) { return std::exchange(by_row_[row], 0); }
   unsigned shift() const { return shift_; }

@@ -383,7 +383,8 @@ class Swatch {
                                            OutlineEdge{2, 3, width + height},
                                            OutlineEdge{3, 0, 2 * width + height}};
     stroker_.begin(view_, scale_);
-    stroker_.draw(corners, edges, stroke);
+    stroker_.add(corners, edges);
+    stroker_.draw(stroke);
     stroker_.finish(line_);
   }
 

@@ -977,11 +977,9 @@ void LayerDrawing::draw_details(const View& picture, double scale, DrawingTools&
   for (std::size_t i = 0; i < line_count_; ++i) {
     Lines& lines = lines_[i];
     tools.stroker.begin(view_, scale);
-    const auto draw = [&](std::span<const Point> points, std::span<const OutlineEdge> edges) {
-      tools.stroker.draw(points, edges, style().stroke, tools.cancellation);
-    };
-    draw(points_of(lines), lines.edges);
-    if (!lines.seen_edges.empty()) draw(lines.seen_points.points, lines.seen_edges);
+    tools.stroker.add(points_of(lines), lines.edges);
+    tools.stroker.add(lines.seen_points.points, lines.seen_edges);
+    tools.stroker.draw(style().stroke, tools.cancellation);
     tools.stroker.finish(lines.mask);
   }
 }

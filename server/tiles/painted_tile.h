@@ -16,7 +16,7 @@ struct TilePlan;
 
 /// Version of the pictures of tiles. Raise it whenever the bytes of any tile change while
 /// everything else in its fingerprint stays the same.
-constexpr int kPictureVersion = 2;
+constexpr int kPictureVersion = 3;
 
 /// Milliseconds spent in each step. Time shared by tiles that are drawn together is split evenly.
 struct PaintTimes {
