@@ -22,6 +22,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::size_t kMostSteps = 32;
+constexpr std::ptrdiff_t kMostWaitingApart = 4;   // for comparison, with memory of their own
 constexpr auto kPause = std::chrono::seconds(1);  // after memory has run out
 
 std::string text_of(const TileId& tile) {
@@ -100,6 +101,24 @@ bool is_shown_otherwise(const ServedLayer& before, std::size_t position_before,
 
 }  // namespace
 
+std::set<std::string> ChangeLog::names_of(const Step& step) {
+  std::set<std::string> names;
+  for (const auto* dataset : {step.before.get(), step.after.get()}) {
+    for (const ServedLayer& layer : dataset->layers()) names.insert(layer.config.name);
+  }
+  return names;
+}
+
+/// Whether any tile of the layer may look different, without comparing tiles.
+bool ChangeLog::has_changed(const Step& step, const std::string& name) {
+  const auto before = step.before->find(name);
+  const auto after = step.after->find(name);
+  if (!before || !after) return true;
+  const ServedLayer& old = step.before->layers()[*before];
+  const ServedLayer& now = step.after->layers()[*after];
+  return old.revision != now.revision || is_shown_otherwise(old, *before, now, *after);
+}
+
 ChangeLog::ChangeLog(Options options) : options_(std::move(options)) {
   try {
     comparing_ = std::thread([this] { compare_steps(); });
@@ -143,21 +162,32 @@ void ChangeLog::note(std::shared_ptr<const Dataset> before, std::shared_ptr<cons
   {
     const std::lock_guard lock(mutex_);
     steps_.push_back(std::move(step));
-    if (steps_.size() > kMostSteps) drop_oldest();
+    combine_waiting();
+    if (steps_.size() > kMostSteps) steps_.pop_front();  // has been compared, or is being compared
   }
   wake_.notify_all();
 }
 
-/// A step that has not been compared yet is merged into the next one, so that the command is
-/// notified of both.
-void ChangeLog::drop_oldest() {
-  const Step& oldest = *steps_.front();
-  if (!oldest.is_taken) {
-    Step& next = *steps_[1];  // not taken yet either
-    next.since = oldest.since;
-    next.before = oldest.before;
+/// Merges the oldest of too many steps that wait into the next one, so that the command is notified
+/// of both and the state between them is not kept. Clients may have tiles of that state: even if
+/// there is no difference between those before and after it, what it changed has changed.
+void ChangeLog::combine_waiting() {
+  const auto oldest =
+      std::ranges::find_if(steps_, [](const auto& each) { return !each->is_taken; });
+  const auto apart = std::count_if(oldest, steps_.end(),
+                                   [](const auto& each) { return each->memory == Memory::apart; });
+  const auto waiting = static_cast<std::size_t>(std::distance(oldest, steps_.end()));
+  if (waiting < 2 || (apart <= kMostWaitingApart && waiting < kMostSteps)) return;
+  Step& step = **oldest;
+  Step& next = **std::next(oldest);
+  for (const std::string& name : names_of(step)) {
+    if (has_changed(step, name)) step.in_full.insert(name);
   }
-  steps_.pop_front();
+  next.in_full.merge(step.in_full);
+  if (step.memory == Memory::apart) next.memory = Memory::apart;
+  next.since = step.since;
+  next.before = step.before;
+  steps_.erase(oldest);
 }
 
 void ChangeLog::compare_steps() {
@@ -204,10 +234,8 @@ void ChangeLog::take_changes(Step& step, std::vector<ChangedLayer> layers) {
 }
 
 std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
-  std::set<std::string> names;
-  for (const auto* dataset : {step.before.get(), step.after.get()}) {
-    for (const ServedLayer& layer : dataset->layers()) names.insert(layer.config.name);
-  }
+  std::set<std::string> names = names_of(step);
+  names.insert(step.in_full.begin(), step.in_full.end());
   std::vector<ChangedLayer> layers;
   for (const std::string& name : names) {
     const auto before = step.before->find(name);
@@ -215,7 +243,7 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
     ChangedLayer layer;
     layer.name = name;
     layer.tiles.zooms = options_.zooms;
-    if (!before || !after ||
+    if (step.in_full.contains(name) || !before || !after ||
         is_shown_otherwise(step.before->layers()[*before], *before, step.after->layers()[*after],
                            *after)) {
       layer.is_everything = true;
@@ -225,6 +253,7 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
       ChangeRequest request;
       request.tile.layers = {name};
       request.zooms = options_.zooms;
+      request.most_scale = options_.most_scale;
       request.certainty = Certainty::candidates;
       request.most_tiles = options_.most_tiles;
       request.labels = options_.labels;

@@ -11,11 +11,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
+#include "server/base/limits.h"
 #include "server/changes/changed_tiles.h"
 #include "server/data/dataset.h"
 #include "server/labels/label_book.h"
@@ -35,6 +37,8 @@ class ChangeLog {
  public:
   struct Options {
     ZoomRange zooms;
+    /// The largest scale of tiles that are served.
+    int most_scale = kMaxScale;
     /// For one zoom of a layer: if more tiles changed, only those of the zooms before it are
     /// listed.
     std::size_t most_tiles = 100'000;
@@ -54,8 +58,13 @@ class ChangeLog {
   ChangeLog(const ChangeLog&) = delete;
   ChangeLog& operator=(const ChangeLog&) = delete;
 
-  /// Records that `after` follows `before`; they are compared in a thread of this object.
-  void note(std::shared_ptr<const Dataset> before, std::shared_ptr<const Dataset> after);
+  /// Where the layers that changed are in memory: those of live layers share most of it.
+  enum class Memory { apart, shared };
+  /// Records that `after` follows `before`; they are compared in a thread of this object, and kept
+  /// until then. Of states with memory of their own, only the last few are kept while they wait:
+  /// layers that changed between those before count as changed everywhere.
+  void note(std::shared_ptr<const Dataset> before, std::shared_ptr<const Dataset> after,
+            Memory memory = Memory::apart);
 
   struct Answer {
     enum class State { known, pending, unknown } state = State::unknown;
@@ -78,7 +87,10 @@ class ChangeLog {
     std::string generation;
     std::shared_ptr<const Dataset> before;  // kept until they have been compared
     std::shared_ptr<const Dataset> after;
+    /// Layers that changed in steps that were combined into this one.
+    std::set<std::string> in_full;
     std::vector<ChangedLayer> layers;
+    Memory memory = Memory::apart;
     bool is_taken = false;  // by the comparing thread
     bool is_compared = false;
   };
@@ -93,7 +105,9 @@ class ChangeLog {
   void compare_steps();
   std::vector<ChangedLayer> compare(const Step& step) const;
   void take_changes(Step& step, std::vector<ChangedLayer> layers);
-  void drop_oldest();
+  void combine_waiting();
+  static std::set<std::string> names_of(const Step& step);
+  static bool has_changed(const Step& step, const std::string& name);
   void tell_command();
   void run_command(const Sum& changes);
 

@@ -107,12 +107,17 @@ class Comparison {
     for (int zoom = request_.zooms.first; zoom <= request_.zooms.last; ++zoom) {
       TileRequest tile = request_.tile;
       tile.tile = {zoom, 0, 0};
-      const auto before = plan_tile(tile, before_);
-      if (!before) return before.problem();
-      const auto after = plan_tile(tile, after_);
-      if (!after) return after.problem();
+      std::vector<TileId> tiles;
       try {
-        const auto tiles = changed(candidates(zoom, *before, *after), *before, *after);
+        for (; tile.scale <= std::max(request_.tile.scale, request_.most_scale); ++tile.scale) {
+          const auto before = plan_tile(tile, before_);
+          if (!before) return before.problem();
+          const auto after = plan_tile(tile, after_);
+          if (!after) return after.problem();
+          const auto more = changed(candidates(zoom, *before, *after), *before, *after);
+          tiles.insert(tiles.end(), more.begin(), more.end());
+        }
+        leave_one_of_each(tiles);
         found.tiles.insert(found.tiles.end(), tiles.begin(), tiles.end());
       } catch (const std::length_error&) {
         found.zooms.last = zoom - 1;
@@ -276,10 +281,15 @@ class Comparison {
       add_across_the_antimeridian(tiles);
     }
     add_tiles_of_labels(zoom, before, after, tiles);
+    leave_one_of_each(tiles);
+    return tiles;
+  }
+
+  /// Of tiles of one zoom, by row and column.
+  static void leave_one_of_each(std::vector<TileId>& tiles) {
     const auto place = [](const TileId& tile) { return std::pair(tile.y, tile.x); };
     std::ranges::sort(tiles, {}, place);
     tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
-    return tiles;
   }
 
   /// Adds the tiles at the other end of the world, since lines reach across the antimeridian.

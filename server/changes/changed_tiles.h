@@ -37,6 +37,9 @@ struct ChangeRequest {
   /// compared.
   TileRequest tile;
   ZoomRange zooms;
+  /// Tiles of all scales from that of `tile` up to this one count, if it is greater: those of a
+  /// larger scale show smaller changes. Only with Certainty::candidates.
+  int most_scale = 1;
   Certainty certainty = Certainty::fingerprints;
   /// For one zoom: if more tiles changed, none is listed from that zoom on.
   std::size_t most_tiles = 1'000'000;

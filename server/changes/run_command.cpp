@@ -114,12 +114,20 @@ int run_command(const std::string& command,
   const pid_t process = Spawning().start(command, fileno(file.get()), environment.data());
   std::chrono::steady_clock::duration stopping{};
   int status = 0;
+  bool has_ended = false;
   while (true) {
-    const pid_t ended = waitpid(process, &status, WNOHANG);
-    if (ended == process) break;
-    if (ended < 0 && errno != EINTR) throw_error(errno, "waiting for the command");
+    if (!has_ended) {
+      const pid_t ended = waitpid(process, &status, WNOHANG);
+      if (ended < 0 && errno != EINTR) throw_error(errno, "waiting for the command");
+      has_ended = ended == process;
+    }
+    // The shell ends at once when it is stopped; what it has started may take longer.
+    const bool is_any_left = stopping.count() > 0 && kill(-process, 0) == 0;
+    if (has_ended && !is_any_left) break;
     if (is_stopping()) {
-      kill(-process, stopping > kGrace ? SIGKILL : SIGTERM);
+      const bool is_last = stopping > kGrace;
+      kill(-process, is_last ? SIGKILL : SIGTERM);
+      if (has_ended && is_last) break;
       stopping += kTick;
     }
     std::this_thread::sleep_for(kTick);

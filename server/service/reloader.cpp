@@ -123,7 +123,7 @@ void Reloader::follow() {
 
 bool Reloader::load_first() {
   try {
-    serve(source_.layers());
+    serve();
   } catch (const std::exception&) {
     metrics_.count_load(false);
     const std::lock_guard lock(mutex_);
@@ -140,7 +140,7 @@ void Reloader::load_again() {
   // changed since, possibly during reading.
   state_read_ = state_of_files(files_);
   try {
-    serve(source_.layers());
+    serve();
     note("");
   } catch (const std::exception& error) {
     metrics_.count_load(false);
@@ -158,10 +158,17 @@ void Reloader::note(const std::string& problem) {
   problem_ = problem;
 }
 
-void Reloader::serve(const std::vector<LayerConfig>& layers) {
+void Reloader::serve() {
+  // Before reading, here and below: later changes are noticed.
+  std::vector<std::string> config;
+  if (!source_.config.empty()) config.push_back(source_.config);
+  const std::string state_of_config = state_of_files(config);
+  const std::vector<LayerConfig> layers = source_.layers();
   const ValueTables values = source_.values ? source_.values() : ValueTables();
-  files_ = watched_files(layers, values);
-  state_read_ = state_of_files(files_);  // before reading: later changes are noticed
+  const std::vector<std::string> sources = watched_files(layers, values);
+  files_ = config;
+  files_.insert(files_.end(), sources.begin(), sources.end());
+  state_read_ = state_of_config + state_of_files(sources);
   std::vector<LiveLayer> live;
   for (const LayerConfig& layer : layers) {
     if (layer.live_query.empty()) continue;
@@ -218,7 +225,7 @@ bool Reloader::follow_live() {
   note_of_databases(problem);
   if (has_changed) {
     publish(std::make_shared<const Dataset>(std::move(layers)));
-    if (changes_ != nullptr) changes_->note(before, data_.get());
+    if (changes_ != nullptr) changes_->note(before, data_.get(), ChangeLog::Memory::shared);
   }
   return std::ranges::none_of(live_, [](const LiveLayer& each) { return each.is_worn(); });
 }
@@ -266,7 +273,6 @@ void Reloader::publish(std::shared_ptr<const Dataset> loaded) {
 std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers,
                                                  const ValueTables& values) const {
   std::vector<std::string> files;
-  if (!source_.config.empty()) files.push_back(source_.config);
   for (const auto& [name, table] : values) files.push_back(table.file);
   for (const LayerConfig& layer : with_grids(layers)) {
     if (layer.live_query.empty()) append_files(layer.file, files);

@@ -94,7 +94,7 @@ class Reloader {
   void follow();
   bool load_first();
   void load_again();
-  void serve(const std::vector<LayerConfig>& layers);
+  void serve();
   using ValueTables = std::map<std::string, ValueTableConfig>;
   std::vector<std::string> watched_files(const std::vector<LayerConfig>& layers,
                                          const ValueTables& values) const;

@@ -162,6 +162,7 @@ Service::Service(const Config& config, LayerSource source)
   if (const auto zooms = parse_zooms(config.changes.zooms)) {
     ChangeLog::Options what;
     what.zooms = *zooms;
+    what.most_scale = config.limits.scale;
     what.command = config.changes.command;
     what.labels = drawing.labels;
     changes_ = std::make_unique<ChangeLog>(std::move(what));

@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <string>
@@ -89,7 +91,10 @@ TEST_F(ChangeLogTest, ASlowCommandIsToldOfEverythingThatChangesMeanwhile) {
   const ChangeLog::Answer second = ask(log, states[1], states[2]);
   ASSERT_EQ(second.state, State::known) << "although the command is still busy";
   ASSERT_FALSE(second.layers.at(0).tiles.tiles.empty());
-  for (std::uint64_t i = 0; i < 100; ++i) come(with_revision(states[2], i));
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    come(with_revision(states[2], i));
+    if (i % 3 == 0) ask(log, states[states.size() - 2], states.back());  // so that few wait
+  }
   EXPECT_EQ(ask(log, states[states.size() - 20], states.back()).state, State::known);
   EXPECT_EQ(ask(log, states.front(), states.back()).state, State::unknown);
   std::ofstream(path("go")).close();
@@ -129,6 +134,69 @@ TEST_F(ChangeLogTest, CommandsAreEndedAndNoMoreAreStarted) {
   log.note(second, first);
   log.end_command();
   EXPECT_EQ(std::filesystem::file_size(path("began")), 1u);
+}
+
+TEST_F(ChangeLogTest, CommandsAreEndedWithWhatTheyHaveStartedEvenIfThatIgnoresSigterm) {
+  ChangeLog::Options options;
+  options.zooms = kLoggedZooms;
+  // The outer shell, which waits for the inner one, ends at SIGTERM.
+  options.command = "sh -c 'trap \"\" TERM; for i in $(seq 500); do echo >> " + path("alive") +
+                    "; sleep 0.02; done'; true";
+  ChangeLog log(options);
+  const Generation first = land_.load();
+  log.note(first, edited(land_, first));
+  ASSERT_TRUE(holds_soon([this] { return is_there("alive"); }));
+  log.end_command();
+  const auto size = std::filesystem::file_size(path("alive"));
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(std::filesystem::file_size(path("alive")), size);
+}
+
+TEST_F(ChangeLogTest, StatesOfLiveLayersAreAllCompared) {
+  ChangeLog::Options options;
+  options.zooms = kLoggedZooms;
+  ChangeLog log(options);
+  std::vector<Generation> states = {land_.load()};
+  states.push_back(edited(land_, states[0]));
+  for (std::uint64_t i = 0; i < 20; ++i) states.push_back(with_revision(states[1], i));
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    log.note(states[i - 1], states[i], ChangeLog::Memory::shared);
+  }
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    const ChangeLog::Answer answer = ask(log, states[i - 1], states[i]);
+    ASSERT_EQ(answer.state, State::known) << i;
+    for (const ChangedLayer& layer : answer.layers) EXPECT_FALSE(layer.is_everything) << i;
+  }
+}
+
+TEST_F(ChangeLogTest, FewStatesAreKeptWhileTheyWaitAndWhatOnlyTheyShowedIsTold) {
+  ChangeLog::Options options;
+  options.zooms = kLoggedZooms;
+  options.command = "cat >> " + path("said") + "; echo $TRAPEZE_GENERATION >> " + path("said");
+  ChangeLog log(options);
+  const Generation first = land_.load();
+  const Generation second = edited(land_, first);
+  std::vector<ServedLayer> layers = second->layers_on_all_grids();
+  layers[0].config.max_zoom = 4;
+  const auto other = std::make_shared<const Dataset>(std::move(layers));
+  log.note(first, second);
+  log.note(second, other);
+  log.note(other, second);
+  std::vector<std::weak_ptr<const Dataset>> states;
+  Generation last = second;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    Generation next = with_revision(second, i);
+    log.note(last, next);
+    states.push_back(next);
+    last = std::move(next);
+    EXPECT_LE(std::ranges::count_if(states, [](const auto& state) { return !state.expired(); }), 8);
+  }
+  std::string said;
+  ASSERT_TRUE(holds_soon([&] {
+    said = read_file(path("said"));
+    return said.ends_with(last->generation() + "\n");
+  }));
+  EXPECT_NE(said.find(second->layers()[0].config.name + " 0/*\n"), std::string::npos);
 }
 
 TEST_F(ChangeLogTest, ALayerThatIsShownOtherwiseMayLookDifferentEverywhere) {

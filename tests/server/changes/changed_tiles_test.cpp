@@ -163,6 +163,30 @@ TEST(ChangedTiles, WithOtherLabelsAreListed) {
   EXPECT_THAT(set_of(tiles), ::testing::Contains(std::tuple(2, 2u, 1u)));
 }
 
+TEST(ChangedTiles, OfLargerScalesAreCandidatesToo) {
+  const auto land_with = [](const std::string& vertex) {
+    const TemporaryFolder folder;
+    const std::string file = folder.write(
+        "land.geojson",
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
+        R"({"type":"Polygon","coordinates":[[[0.2,0.2],[1,0.25],[0.95,0.8],[0.25,0.75],[)" +
+            vertex + R"(],[0.2,0.2]]]}}]})");
+    return Dataset::load(layers_of_files({file}));
+  };
+  const auto before = land_with("0.2249,0.47501");
+  const auto after = land_with("0.2241,0.47508");
+  ChangeRequest drawn = request_of("", Certainty::bytes);
+  drawn.zooms = {8, 8};
+  EXPECT_THAT(changed_tiles(drawn, before, after)->tiles, ::testing::IsEmpty());
+  drawn.tile.scale = 2;  // shows the vertex
+  const Tiles different = set_of(changed_tiles(drawn, before, after)->tiles);
+  EXPECT_THAT(different, ::testing::Contains(std::tuple(8, 128u, 127u)));
+  ChangeRequest request = request_of("", Certainty::candidates);
+  request.zooms = {8, 8};
+  request.most_scale = 4;
+  EXPECT_TRUE(holds_all(set_of(changed_tiles(request, before, after)->tiles), different));
+}
+
 TEST(ChangedTiles, WithoutTheTopologyTestAreListed) {
   const auto land_to = [](const std::string& east) {
     const TemporaryFolder folder;
