@@ -326,14 +326,15 @@ std::size_t count_vertices(std::span<const Rings* const> features,
   return vertices;
 }
 
-/// The faces of those features that can share a graph; others are left out. None if fewer than two
-/// remain, or if they form a crowd.
+/// The faces of those features that can share a graph; others are left out. None if fewer than that
+/// many remain, or if they form a crowd.
 std::optional<SetFaces> choose_faces(const TrapezoidalGraph& g, const SetMap& map,
                                      std::span<const Rings* const> features,
-                                     const CoverageTolerance& tolerance, CoverageOutcome& outcome) {
+                                     const CoverageTolerance& tolerance, std::size_t least,
+                                     CoverageOutcome& outcome) {
   for (const double most : {tolerance.most_overlap, tolerance.most_overlap_in_crowd}) {
     leave_out_overlaps(g, map, most, outcome);
-    if (features.size() < outcome.apart.size() + 2) return std::nullopt;
+    if (features.size() < outcome.apart.size() + least) return std::nullopt;
     outcome.faces = FaceFeatures::in_order(features.size());
     SetFaces faces(map.sets(), outcome.apart);
     if (std::isfinite(tolerance.narrowest_overlap)) {
@@ -511,7 +512,9 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   tell(0.5);
   outcome.areas.assign(features.size(), 0);
   if (!note_areas(graph, map.sets(), outcome)) return outcome;
-  const std::optional<SetFaces> faces = choose_faces(graph, map, features, tolerance, outcome);
+  const std::size_t least = merging.ratio > 0 && features.size() == 1 ? 1 : 2;
+  const std::optional<SetFaces> faces =
+      choose_faces(graph, map, features, tolerance, least, outcome);
   if (!faces) return outcome;
   tell(0.6);
   const bool fills_gaps = tolerance.widest_gap > 0;

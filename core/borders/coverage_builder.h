@@ -85,8 +85,8 @@ class CoverageBuilder {
   /// Gaps whose mean width (area over half of the border) is at most `widest_gap` become a part of
   /// the feature with the longest border, if their area is at most that border times `widest_gap`.
   /// If features overlap by more than is tolerated, those that share the fewest edges with
-  /// neighbours are left out. Nothing is built if fewer than two remain, or if they are still a
-  /// crowd.
+  /// neighbours are left out. Nothing is built if fewer than two remain, except for a single
+  /// feature that is merged, or if they are still a crowd.
   ///
   /// Never throws for bad geometry: `graph` is meaningful only if `built` is true in the outcome.
   /// Reports progress to `share`, if given. Runs on up to `threads` threads; the graph does not

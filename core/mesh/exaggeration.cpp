@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -85,6 +86,21 @@ struct Touch {
   double radius = 0;
   double share = 0;  // of the way: where it is touched
 };
+
+/// The distance of a place on the map from the edges of the map.
+double distance_to_frame(Vector at) {
+  return std::max(0.0,
+                  std::min({at.x - kGridMin, kGridMax - at.x, at.y - kGridMin, kGridMax - at.y}));
+}
+
+/// The same along a direction of length 1.
+double way_to_frame(Vector at, Vector way) {
+  const auto until = [](double from, double by) {
+    if (by == 0) return std::numeric_limits<double>::infinity();
+    return std::max(0.0, ((by > 0 ? kGridMax : kGridMin) - from) / by);
+  };
+  return std::min(until(at.x, way.x), until(at.y, way.y));
+}
 
 /// The width that a face counts as having, because of a disc at that distance.
 double seen_from(double far, double own_radius, double radius) {
@@ -413,15 +429,20 @@ double Exaggeration::half_ray(At at, double most) {
   return std::min(most, ray(at) / 2.0);
 }
 
-/// A disc in the face, inwards from the place: the smaller or the larger one of kMostRadii.
+/// A disc in the face, inwards from the place: the smaller or the larger one of kMostRadii. The
+/// larger one, from which reserves follow, ends at the edges of the map: a face that was cut off
+/// there may continue by very little.
 Exaggeration::Disc Exaggeration::disc(At at, std::size_t size) {
   if (const std::uint32_t known = sample(at).discs[size]; known != kNone) return discs_[known];
   const double most = kMostRadii[size] * width_;
+  const bool is_for_reserve = size == 1;
   Disc found;
   for (const double depth : {most, kDepth * most}) {
-    const double deep = half_ray(at, depth);
+    double deep = half_ray(at, depth);
+    if (is_for_reserve) deep = std::min(deep, way_to_frame(place(at), inward(at.side)) / 2);
     const Vector middle = place(at) + inward(at.side) * deep;
-    const double radius = clearance(middle, std::min(most, deep), loop_of(at.side));
+    double radius = clearance(middle, std::min(most, deep), loop_of(at.side));
+    if (is_for_reserve) radius = std::min(radius, distance_to_frame(middle));
     if (radius > found.radius) found = {middle, radius};
     if (radius >= most || deep < depth) break;
   }

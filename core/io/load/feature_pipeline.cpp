@@ -99,6 +99,7 @@ class FeaturePipeline::Lane {
        std::shared_ptr<const TargetGrid> grid)
       : reader_(source, std::move(grid)),
         are_to_wait_(options.coverage != CoverageMode::off),
+        are_merged_(options.merge > 0),
         worker_(worker) {}
 
   void take(const Job& job) {
@@ -122,7 +123,8 @@ class FeaturePipeline::Lane {
 
   void take(const Task& task, unsigned threads) {
     begin(work_of(task));
-    if (task.size() == 1) {
+    // The polygons of a single feature are merged, too, and its courtyards are filled.
+    if (task.size() == 1 && !are_merged_) {
       worker_.build_apart(task.front()->key, task.front()->rings_apart(), threads);
     } else {
       worker_.build_together(task, threads);
@@ -156,6 +158,7 @@ class FeaturePipeline::Lane {
 
   SourceRingReader reader_;
   const bool are_to_wait_;
+  const bool are_merged_;
   FeatureWorker& worker_;
   std::vector<WaitingFeature> waiting_;
   std::atomic<double> at_hand_ = 0;

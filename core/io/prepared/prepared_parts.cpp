@@ -138,6 +138,8 @@ struct Found {
   Part overview;
 };
 
+/// Whether they have the same contents. The state of the source may be another one, if it has
+/// changed only in other parts.
 bool are_same(const PreparedPart& part, const PreparedSummary& summary) {
   return part.summary().revision == summary.revision && part.summary().part == summary.part &&
          part.summary().file_size == summary.file_size &&
@@ -164,8 +166,10 @@ Found find_parts(const std::vector<std::string>& files, const PreparedDemands& d
     if (!summary.part) {
       fail(file, "is a whole layer, not a part of one: serve it by its own name");
     }
-    Part part = earlier_part(earlier, file, summary);
-    if (part == nullptr) part = std::make_shared<const PreparedPart>(file, std::move(summary));
+    const Part same = earlier_part(earlier, file, summary);
+    Part part = same == nullptr
+                    ? std::make_shared<const PreparedPart>(file, std::move(summary))
+                    : std::make_shared<const PreparedPart>(file, std::move(summary), *same);
     if (!part->number().is_overview()) {
       found.parts.push_back(std::move(part));
     } else if (found.overview == nullptr) {
@@ -220,6 +224,13 @@ std::unique_ptr<Layer> frame_of(const std::vector<Part>& parts) {
 }
 
 }  // namespace
+
+PreparedPart::PreparedPart(std::string path, PreparedSummary summary, const PreparedPart& earlier)
+    : PreparedPart(std::move(path), std::move(summary)) {
+  const std::lock_guard lock(earlier.mutex_);
+  layer_ = earlier.layer_;
+  file_ = earlier.file_;
+}
 
 std::shared_ptr<const Layer> PreparedPart::layer() const {
   const std::lock_guard lock(mutex_);

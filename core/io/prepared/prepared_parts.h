@@ -25,6 +25,9 @@ class PreparedPart {
  public:
   PreparedPart(std::string path, PreparedSummary summary)
       : path_(std::move(path)), summary_(std::move(summary)) {}
+  /// A part with the contents of `earlier`, whose layer it shares if that has been opened. What
+  /// else its file declares, such as the state of the source, is that of `summary`.
+  PreparedPart(std::string path, PreparedSummary summary, const PreparedPart& earlier);
 
   const std::string& path() const { return path_; }
   const PreparedSummary& summary() const { return summary_; }
@@ -92,10 +95,10 @@ std::vector<std::string> files_of_pattern(const std::string& pattern);
 /// A digest of the revisions of the parts, in order.
 std::uint64_t revision_of_parts(const std::vector<std::shared_ptr<const PreparedPart>>& parts);
 
-/// Opens the parts in these files. Parts that are unchanged in `earlier`, if not null, are taken
-/// from there. Throws std::runtime_error that names the files if one is not a part, or was prepared
-/// otherwise than demanded, otherwise than another one, or from another state of the source; if a
-/// part is missing or occurs twice; or if an overview was made from other parts.
+/// Opens the parts in these files. The layers of parts that are unchanged in `earlier`, if not
+/// null, are taken from there. Throws std::runtime_error that names the files if one is not a part,
+/// or was prepared otherwise than demanded, otherwise than another one, or from another state of
+/// the source; if a part is missing or occurs twice; or if an overview was made from other parts.
 LoadedLayer open_prepared_parts(const std::vector<std::string>& files,
                                 const PreparedDemands& demands,
                                 const PreparedParts* earlier = nullptr);

@@ -51,6 +51,8 @@ bool are_within(std::span<const double> values, double limit) {
                      [limit](double value) { return std::abs(value) <= limit; });
 }
 
+constexpr auto kTurn = static_cast<double>(kGridSize);  // around the world, in cells
+
 constexpr double kNearSeam = 2e-5;      // degrees: two metres, the precision to which sources round
                                         // 180
 constexpr double kLeastSeamCut = 0.01;  // degrees: a kilometre; shorter edges may belong to a
@@ -148,16 +150,27 @@ void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
   if (feature.failure.empty() && transform_ != nullptr) to_lonlat(feature);
   if (!feature.failure.empty()) return;
   feature.rings.points.reserve(x_.size());
+  turns_.clear();
+  const auto begin_part = [this] {
+    west_ = std::numeric_limits<double>::infinity();
+    east_ = -west_;
+  };
+  begin_part();
   std::size_t begin = 0;
   std::size_t part = 0;
+  std::size_t first_of_part = 0;
   for (std::size_t ring = 0; ring < ends_.size(); ++ring) {
     append_ring(begin, ends_[ring], feature);
     if (!feature.failure.empty()) return feature.rings.clear();
     begin = ends_[ring];
     if (part == part_ends_.size() || ring + 1 < part_ends_[part]) continue;
+    separate_turns(first_of_part, feature);
     feature.part_ends.push_back(static_cast<std::uint32_t>(feature.rings.size()));
+    first_of_part = feature.rings.size();
+    begin_part();
     ++part;
   }
+  if (part_ends_.empty()) separate_turns(0, feature);
   if (feature.rings.empty()) check_degrees(feature);
 }
 
@@ -303,17 +316,39 @@ void RingReader::append_ring(std::size_t begin, std::size_t end, FeatureRings& f
   project_ring();
 
   const Extent extent = extent_of(ring_);
+  west_ = std::min(west_, extent.min_x);
+  east_ = std::max(east_, extent.max_x);
   if (extent.min_x >= kGridMin && extent.max_x <= kGridMax && extent.min_y >= kGridMin &&
       extent.max_y <= kGridMax) {
     append_snapped(ring_, rings);
+    turns_.resize(rings.size(), 0);
     return;
   }
-  constexpr auto kTurn = static_cast<double>(kGridSize);
   for (const double shift : {0.0, -kTurn, kTurn}) {
     if (extent.min_x + shift < kGridMax && extent.max_x + shift > kGridMin) {
       append_clipped(shift, rings);
+      turns_.resize(rings.size(), shift);
     }
   }
+}
+
+/// Makes a part of the rings of each turn around the world, from ring `first` on, if these are
+/// longer than the world: by even-odd, what they cover twice would be left out. The last part is
+/// not ended yet.
+void RingReader::separate_turns(std::size_t first, FeatureRings& feature) const {
+  if (east_ - west_ <= kTurn) return;
+  Rings separate;
+  for (std::size_t i = 0; i < first; ++i) separate.add(feature.rings[i]);
+  for (const double turn : {0.0, -kTurn, kTurn}) {
+    const std::size_t begin = separate.size();
+    const bool is_more =
+        begin > first && (feature.part_ends.empty() || feature.part_ends.back() < begin);
+    if (is_more) feature.part_ends.push_back(static_cast<std::uint32_t>(begin));
+    for (std::size_t i = first; i < feature.rings.size(); ++i) {
+      if (turns_[i] == turn) separate.add(feature.rings[i]);
+    }
+  }
+  feature.rings = std::move(separate);
 }
 
 void RingReader::unwrap_ring(std::size_t begin, std::size_t end) {

@@ -40,7 +40,8 @@ bool has_polygons(const OGRGeometry& geometry);
 /// lines and the third dimension are ignored. Positions are projected, clipped to the Web Mercator
 /// square, and snapped to the nearest cell, without consecutive duplicates. Geometry beyond the
 /// 180th meridian reappears on the other side, and edges of a kilometre or more that run within two
-/// metres of it are moved onto it. Rings are neither sorted nor validated.
+/// metres of it are moved onto it. A polygon that is longer than the world becomes a part for each
+/// turn, because it covers places twice. Rings are neither sorted nor validated.
 ///
 /// On the grid of another system, rings are clipped to the extent that it shows. Edges, which are
 /// straight in the source, are cut so finely that they stay in place: see GridRings.
@@ -71,6 +72,7 @@ class RingReader {
   bool map_to_lonlat(std::vector<double>& x, std::vector<double>& y);
   void append_on_grid(FeatureRings& feature);
   void append_ring(std::size_t begin, std::size_t end, FeatureRings& feature);
+  void separate_turns(std::size_t first, FeatureRings& feature) const;
   void unwrap_ring(std::size_t begin, std::size_t end);
   void project_ring();
   void clip_latitude();
@@ -96,6 +98,10 @@ class RingReader {
   PositionRing clipped_;
   PositionRing scratch_;
   std::vector<PositionRing> parts_;  // parts of the ring on the grid of another system
+  // Of each ring of the feature: by how many turns around the world it was moved.
+  std::vector<double> turns_;
+  double west_ = 0;  // of the current part, in cells
+  double east_ = 0;
 };
 
 }  // namespace trapeze

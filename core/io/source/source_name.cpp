@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::string_view kMask = "***";
 constexpr std::string_view kSpaces = " \t\n\v\f\r";
-constexpr std::string_view kEndsOfValue = " \t\n\v\f\r&";
+constexpr std::string_view kSpacesOrNext = " \t\n\v\f\r&";
+constexpr std::string_view kLettersOfNames = "abcdefghijklmnopqrstuvwxyz0123456789_-";
 constexpr std::string_view kEndsOfQueryValue = "&#";
 constexpr std::string_view kEndOfOdbc = ";";
 
@@ -28,15 +29,29 @@ std::size_t begin_of_value(std::string_view text, std::size_t at) {
   return std::min(text.find_first_not_of(kSpaces, sign + 1), text.size());
 }
 
-/// An unclosed quote or brace extends to the end.
+/// Whether the name that contains the character at `at` is that of a parameter in the query of a
+/// URL.
+bool is_in_query(std::string_view text, std::size_t at) {
+  const std::size_t before = text.find_last_not_of(kLettersOfNames, at);
+  return before != std::string_view::npos && (text[before] == '?' || text[before] == '&');
+}
+
+/// An unclosed quote or brace extends to the end. In a connection string, whose values end only
+/// with spaces, a backslash makes the next character a part of the value.
 std::size_t end_of_value(std::string_view text, std::size_t begin, std::string_view ends) {
   if (ends == kEndOfOdbc && text[begin] == '{') {
     return std::min(text.find('}', begin), text.size() - 1) + 1;
   }
-  if (text[begin] != '\'') return std::min(text.find_first_of(ends, begin), text.size());
-  for (std::size_t i = begin + 1; i < text.size(); ++i) {
-    if (text[i] == '\'') return i + 1;
-    if (text[i] == '\\') ++i;
+  const bool is_quoted = text[begin] == '\'';
+  const bool has_escapes = is_quoted || ends == kSpaces;
+  for (std::size_t i = is_quoted ? begin + 1 : begin; i < text.size(); ++i) {
+    if (has_escapes && text[i] == '\\') {
+      ++i;
+    } else if (is_quoted && text[i] == '\'') {
+      return i + 1;
+    } else if (!is_quoted && ends.find(text[i]) != std::string_view::npos) {
+      return i;
+    }
   }
   return text.size();
 }
@@ -50,7 +65,10 @@ std::string without_assigned_passwords(std::string_view text, std::string_view w
   for (std::size_t at = 0; (at = lower.find(word, at)) != std::string::npos;) {
     at += word.size();
     const std::size_t begin = begin_of_value(text, at);
-    const std::size_t end = begin == text.size() ? begin : end_of_value(text, begin, ends);
+    const bool ends_with_next = ends == kSpaces && is_in_query(lower, at - 1);
+    const std::size_t end = begin == text.size()
+                                ? begin
+                                : end_of_value(text, begin, ends_with_next ? kSpacesOrNext : ends);
     if (begin == end) continue;
     masked.append(text.substr(done, begin - done)).append(kMask);
     at = done = end;
@@ -101,7 +119,7 @@ std::string without_login_password(const std::string& text) {
 
 std::string name_of_source(const std::string& path) {
   const std::string login = without_login_password(path);
-  const std::string masked = without_assigned_passwords(login, "password", kEndsOfValue);
+  const std::string masked = without_assigned_passwords(login, "password", kSpaces);
   return without_keys_in_query(
       without_user_passwords(without_assigned_passwords(masked, "pwd", kEndOfOdbc)));
 }

@@ -103,6 +103,23 @@ TEST_F(GrowExportTest, ARiverTakesFromItsFieldsWhatItGets) {
   }
 }
 
+TEST_F(GrowExportTest, WhatCrossesTheAntimeridianIsNotCovered) {
+  // Three touching strips of 5, 10 and 5 m, once with the antimeridian in the middle.
+  for (const double middle : {20037508.342789244, 20030000.0}) {
+    const auto strip = [middle](double from, double to) {
+      const std::string west = std::to_string(middle + from);
+      const std::string east = std::to_string(middle + to);
+      return "(" + west + " 0," + east + " 0," + east + " 100," + west + " 100," + west + " 0)";
+    };
+    set_source({strip(-10, -5), strip(-5, 5), strip(5, 10)});
+    const std::vector<Rings> rings = write();
+    ASSERT_EQ(rings.size(), 3u) << middle;
+    EXPECT_EQ(report_.too_small, 0u) << middle;
+    EXPECT_GE(area(rings[1]), 995) << middle;
+    EXPECT_GE(area(rings[0]), 500) << middle;
+  }
+}
+
 TEST_F(GrowExportTest, HousesThatGrowTowardsEachOtherShareTheVoid) {
   set_source({"(0 0,10 0,10 100,0 100,0 0)", "(14 0,24 0,24 100,14 100,14 0)"});
   const std::vector<Rings> rings = write();

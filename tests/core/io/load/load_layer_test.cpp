@@ -53,10 +53,10 @@ double x_at(const MeshView& mesh, const MeshEdge& edge, double y) {
   return upper.x + share * (static_cast<double>(lower.x) - upper.x);
 }
 
-// The area of one feature at full detail, in cells.
-double area_of(const Layer& layer, std::uint32_t row) {
+// The area of one feature, in cells.
+double area_of(const Layer& layer, std::uint32_t row, Level level = 0) {
   std::vector<TrapezoidRange> ranges;
-  layer.select({.box = {kGridMin, kGridMin, kGridMax, kGridMax}}, ranges);
+  layer.select({.box = {kGridMin, kGridMin, kGridMax, kGridMax}, .level = level}, ranges);
   const MeshView& mesh = layer.mesh();
   double area = 0;
   for (const TrapezoidRange range : ranges) {
@@ -789,6 +789,27 @@ TEST_F(LoadLayerTest, LoadsASourceWithoutPolygonsAsAnEmptyLayer) {
   EXPECT_EQ(loaded.report.other_geometry, 2u);
   EXPECT_EQ(loaded.layer->features().size(), 0u);
   EXPECT_TRUE(loaded.layer->bounds().is_empty());
+}
+
+TEST(LoadLayer, ASingleFeatureIsMergedAsAmongOthers) {
+  const TemporaryFolder folder;
+  // Two houses, 11 m apart, and a courtyard.
+  const TestFeature town{
+      "MULTIPOLYGON(((0 0,.001 0,.001 .001,0 .001,0 0),(.0004 .0004,.0004 .0005,.0005 .0005,.0005 "
+      ".0004,.0004 .0004)),((.0011 0,.0021 0,.0021 .001,.0011 .001,.0011 0)))",
+      1, "town"};
+  const TestFeature far{"POLYGON((50 20,50.001 20,50.001 20.001,50 20.001,50 20))", 2, "far"};
+  write_source(folder.file("alone.gpkg"), "GPKG", {{.features = {town}}});
+  write_source(folder.file("both.gpkg"), "GPKG", {{.features = {town, far}}});
+  LoadOptions options;
+  options.generalization.merge = 16;
+  const LoadedLayer alone = load_layer(folder.file("alone.gpkg"), options);
+  const LoadedLayer both = load_layer(folder.file("both.gpkg"), options);
+  const double whole = rectangle(0, 0, 0.0021, 0.001);
+  for (const Level level : {Level{0}, Level{16}}) {
+    EXPECT_EQ(area_of(*alone.layer, 0, level), area_of(*both.layer, 0, level));
+  }
+  EXPECT_NEAR(area_of(*alone.layer, 0, Level{16}), whole, whole / 100);
 }
 
 }  // namespace

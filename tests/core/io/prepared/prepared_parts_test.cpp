@@ -135,11 +135,36 @@ TEST(PreparedPartsTest, ThoseThatAreTheSameAreTakenOver) {
   const TemporaryFolder folder;
   const auto files = prepare(folder, write_squares(folder, "squares.gpkg", 20), "part", 3);
   const LoadedLayer before = open_prepared_parts(files, {});
+  const auto layer = before.parts->parts()[1]->layer();
   const LoadedLayer after = open_prepared_parts(files, {}, before.parts.get());
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(after.parts->parts()[i], before.parts->parts()[i]);
-  }
+  EXPECT_EQ(after.parts->parts()[0]->layer_if_open(), nullptr);
+  EXPECT_EQ(after.parts->parts()[1]->layer_if_open(), layer);
   EXPECT_EQ(after.revision, before.revision);
+}
+
+TEST(PreparedPartsTest, ThoseThatAreTheSameAreOfTheStateOfTheSourceThatTheirFilesDeclare) {
+  const TemporaryFolder folder;
+  const std::string source = write_squares(folder, "squares.gpkg", 20);
+  const auto files = prepare(folder, source, "part", 3);
+  const LoadedLayer before = open_prepared_parts(files, {});
+  const auto unchanged = before.parts->parts()[0]->layer();
+  const auto changed = before.parts->parts()[1]->layer();
+  LoadOptions options;
+  options.division = SourceDivision::of(source, {}, {}, 3, {});
+  SourceStamp stamp = stamp_source(source);
+  ++stamp.files.front().checksum;  // an attribute in the second part, say
+  for (options.part = 1; options.part <= 3; ++options.part) {
+    const std::uint64_t revision = before.parts->parts()[options.part - 1]->summary().revision;
+    save_prepared_layer(files[options.part - 1], load_layer(source, options),
+                        options.part == 2 ? 77 : revision, stamp);
+  }
+  const LoadedLayer after = open_prepared_parts(files, {}, before.parts.get());
+  for (const auto& part : after.parts->parts()) {
+    EXPECT_EQ(part->summary().source.files.front().checksum, stamp.files.front().checksum);
+  }
+  EXPECT_EQ(after.parts->parts()[0]->layer(), unchanged);
+  EXPECT_NE(after.parts->parts()[1]->layer(), changed);
+  EXPECT_NE(after.parts->parts()[2]->layer(), nullptr);
 }
 
 TEST(PreparedPartsTest, TellsWhichAreMissingOrThereTwice) {

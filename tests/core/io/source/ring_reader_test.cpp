@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/borders/part_union.h"
 #include "core/grid/web_mercator.h"
 #include "tests/core/io/source/written_source.h"
 
@@ -331,6 +332,19 @@ TEST(RingReaderTest, BringsWhatLiesBeyondTheAntimeridianInOnTheOtherSide) {
   EXPECT_EQ(twice_area(feature.rings[0]), twice_area(east.rings[0]));
   EXPECT_EQ(twice_area(feature.rings[1]), twice_area(west.rings[0]));
   EXPECT_EQ(read("POLYGON((-182 0,-179 0,-179 1,-182 1,-182 0))").rings.size(), 2u);
+}
+
+TEST(RingReaderTest, MakesAPartOfEachTurnOfWhatIsLongerThanTheWorld) {
+  FeatureRings feature = read("POLYGON((-190 0,190 0,190 1,-190 1,-190 0))");
+  EXPECT_THAT(feature.part_ends, ElementsAre(1u, 2u, 3u));
+  EXPECT_TRUE(unite_parts(feature.rings, feature.part_ends).did_overlap);
+  const FeatureRings world = read("POLYGON((-180 0,180 0,180 1,-180 1,-180 0))");
+  ASSERT_EQ(feature.rings.size(), 1u);
+  EXPECT_EQ(std::abs(twice_area(feature.rings[0])), std::abs(twice_area(world.rings[0])));
+  // A hole stays in the turn in which it lies.
+  const FeatureRings with_hole =
+      read("POLYGON((-190 0,190 0,190 1,-190 1,-190 0),(5 0.2,6 0.2,6 0.8,5 0.2))");
+  EXPECT_THAT(with_hole.part_ends, ElementsAre(2u, 3u, 4u));
 }
 
 TEST(RingReaderTest, LaysCutsThatAreRoundedOnTheAntimeridian) {

@@ -304,6 +304,12 @@ TEST(NameOfSourceTest, HidesAllOfAPasswordOfAnyCharacters) {
   EXPECT_EQ(name_of_source("PG:password='' host=db"), "PG:password=*** host=db");
   EXPECT_EQ(name_of_source("PG:password=password=a password=b"), "PG:password=*** password=***");
   EXPECT_EQ(name_of_source("PG:password= "), "PG:password= ");
+  EXPECT_EQ(name_of_source("PG:host=db password=se&cret user=me"),
+            "PG:host=db password=*** user=me");
+  EXPECT_EQ(name_of_source("PG:password=se\\ cret\\' user=me"), "PG:password=*** user=me");
+  EXPECT_EQ(name_of_source("PG:password=secret\\"), "PG:password=***");
+  EXPECT_EQ(name_of_source("postgresql://db/maps?sslpassword=secret&user=me"),
+            "postgresql://db/maps?sslpassword=***&user=me");
   EXPECT_EQ(name_of_source("password"), "password");
   EXPECT_EQ(name_of_source("postgresql://me:se@cret@db/maps"), "postgresql://me:***@db/maps");
   EXPECT_EQ(name_of_source("postgresql://me:@db/maps"), "postgresql://me:***@db/maps");
