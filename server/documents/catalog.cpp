@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <set>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include "core/grid/web_mercator.h"
 #include "render/mask/mask.h"
@@ -120,14 +122,10 @@ std::string tiles_url(const TileJsonRequest& request, const std::string& base_ur
                      scale_suffix(request.scale), after_path(request.style.own.canonical_text()));
 }
 
-/// For layers whose numbers are classed by a rule, or that have joined values: the result. The
-/// problem is one of the style.
-struct Classifications {
-  Json json = Json::object();  // by layer
-  std::vector<std::string> attributions;
-};
-Result<Classifications> classifications_of(const TileJsonRequest& request, const Dataset& dataset) {
-  Classifications found;
+/// For layers whose numbers are classed by a rule, or that have joined values: the result, by
+/// layer. The problem is one of the style.
+Result<Json> classifications_of(const TileJsonRequest& request, const Dataset& dataset) {
+  Json found = Json::object();
   for (const std::string& name : request.layers) {
     const std::size_t position = *dataset.find(name);
     const ServedLayer& served = dataset.layers()[position];
@@ -136,13 +134,7 @@ Result<Classifications> classifications_of(const TileJsonRequest& request, const
     if (!complete || !names_values(*complete, name)) continue;
     const auto style = layer_style(*complete, served, position);
     if (!style) return style.problem();
-    found.json[name] = classification_json(*style);
-    if (style->classing.joined == nullptr) continue;
-    for (const auto& [table, named] : dataset.tables()) {
-      // Not by address: a join that is kept over a reload has the table that was read before it.
-      if (named.table->id() != style->classing.joined->table().id()) continue;
-      if (!named.attribution.empty()) found.attributions.push_back(named.attribution);
-    }
+    found[name] = classification_json(*style);
   }
   return found;
 }
@@ -205,6 +197,24 @@ std::string catalog_json(const Dataset& dataset, const std::string& renderer,
   return to_text(json);
 }
 
+std::string attribution_of(std::string own, std::span<const std::string> layers,
+                           const StyleQuery& style, const Dataset& dataset) {
+  std::string text = std::move(own);
+  for (const std::string& layer : layers) {
+    const ParameterValue* value = style.find(layer, ParameterId::values);
+    const StyleQuery& usual = dataset.layers()[*dataset.find(layer)].config.style;
+    if (value == nullptr) value = usual.find(layer, ParameterId::values);
+    const auto* choice = value == nullptr ? nullptr : std::get_if<TableChoice>(value);
+    if (choice == nullptr) continue;
+    for (const auto& [name, named] : dataset.tables()) {
+      if (name != choice->name && named.table->id() != choice->name) continue;
+      if (named.attribution.empty() || text.find(named.attribution) != std::string::npos) continue;
+      text = text.empty() ? named.attribution : fmt::format("{}, {}", text, named.attribution);
+    }
+  }
+  return text;
+}
+
 Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dataset,
                               const std::string& base_url) {
   const auto summarized = summarize_layers(request.layers, dataset);
@@ -214,14 +224,10 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["tilejson"] = "3.0.0";
   json["name"] = summary.title;
   json["description"] = summary.description;
-  json["attribution"] = summary.attribution;
+  json["attribution"] =
+      attribution_of(summary.attribution, request.layers, request.full_style, dataset);
   const auto classified = classifications_of(request, dataset);
   if (!classified) return classified.problem();
-  for (const std::string& attribution : classified->attributions) {
-    const std::string before = json["attribution"].get<std::string>();
-    if (before.find(attribution) != std::string::npos) continue;
-    json["attribution"] = before.empty() ? attribution : fmt::format("{}, {}", before, attribution);
-  }
   json["scheme"] = "xyz";
   json["format"] = "png";
   json["tiles"] = {tiles_url(request, base_url)};
@@ -234,7 +240,7 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["bounds"] = summary.bounds();
   json["center"] = center_json(summary, strip_around_layers(request.layers, dataset));
   json["legend"] = legend_url(request, base_url);
-  if (!classified->json.empty()) json["classification"] = classified->json;
+  if (!classified->empty()) json["classification"] = *classified;
   json["vector_layers"] = Json::array();  // required by TileJSON 3.0, though these are pictures
   return to_text(json);
 }

@@ -1,6 +1,7 @@
 // Documents that describe the served layers, as JSON text.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,11 @@ std::string_view json_type_of(FieldType type);
 /// server, without a final '/'.
 std::string catalog_json(const Dataset& dataset, const std::string& renderer,
                          const ViewerConfig& viewer, const std::string& base_url);
+
+/// The attribution of the layers, and those of the configured tables whose values they show in that
+/// style, or in their own.
+std::string attribution_of(std::string own, std::span<const std::string> layers,
+                           const StyleQuery& style, const Dataset& dataset);
 
 /// TileJSON 3.0 of the layers drawn together, with the style of the request in its tile URLs. The
 /// problem is 404 for an unknown layer.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/grid/web_mercator.h"
 #include "render/text/fonts.h"
 #include "server/base/defaults.h"
 #include "server/base/limits.h"
@@ -29,6 +30,7 @@ struct DocumentRequest {
   std::uint64_t map_pixels = defaults::kMapPixels;  // limit for the picture of a window
   const TileMatrixSets& sets = TileMatrixSets::built_in();
   std::size_t max_layers = kMaxLayersPerTile;  // limit for one picture
+  int max_zoom = kMaxZoom;                     // pixels of a picture are not smaller than there
 
   /// The value of the first pair with that name, or null.
   const std::string* find(std::string_view name) const {

@@ -12,6 +12,7 @@
 #include "core/grid/web_mercator.h"
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
+#include "server/documents/catalog.h"
 #include "server/documents/ogc_map.h"
 #include "server/documents/openapi.h"
 #include "server/documents/routes.h"
@@ -153,7 +154,9 @@ Json collection_json(const ServedLayer& served, const DocumentRequest& request) 
   json["id"] = config.name;
   json["title"] = config.title;
   if (!config.description.empty()) json["description"] = config.description;
-  if (!config.attribution.empty()) json["attribution"] = config.attribution;
+  const std::string attribution =
+      attribution_of(config.attribution, {&config.name, 1}, StyleQuery(), request.dataset);
+  if (!attribution.empty()) json["attribution"] = attribution;
   const Box& box = served.layer->bounds();
   const GeographicBounds bounds = box.is_empty() ? kWorldBounds : bounds_in_degrees(box);
   json["extent"] = {{"spatial", {{"bbox", Json::array({Json(bounds)})}, {"crs", crs84()->uri}}}};
@@ -267,7 +270,11 @@ Result<Json> tileset_json(const TiledResource& resource, const std::string& matr
   const std::string url = fmt::format("{}/{}", tiles_url(request, resource), set->id);
   Json json = tileset_head(summary, *set);
   if (!summary.description.empty()) json["description"] = summary.description;
-  if (!summary.attribution.empty()) json["attribution"] = summary.attribution;
+  const auto style = request.style_for(resource.layers, kOgcApiParameters);
+  if (!style) return style.problem();
+  const std::string attribution =
+      attribution_of(summary.attribution, resource.layers, *style, request.dataset);
+  if (!attribution.empty()) json["attribution"] = attribution;
   json["boundingBox"] = bounding_box(summary.bounds());
   json["tileMatrixSetLimits"] = limits_json(summary, *set);
   Json item =

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -98,6 +99,24 @@ Result<WindowSides> sides_of(const std::vector<std::string>& layers, const MapSy
   return *sides;
 }
 
+/// That many times as large around the same middle, and not less after rounding to cells.
+WindowSides enlarged(const WindowSides& sides, double times) {
+  const double x = sides.width() * (times - 1) / 2 + 1;
+  const double y = sides.height() * (times - 1) / 2 + 1;
+  return {sides.west - x, sides.north - y, sides.east + x, sides.south + y};
+}
+
+/// The view of the box or, without one, of the layers, and of so much around them that pixels are
+/// not smaller than at the last zoom.
+Result<View> view_of(const WindowSides& sides, const MapSystem& system,
+                     const DocumentRequest& request) {
+  auto view = map_view(sides, request, 1, system.projection);
+  if (!view || request.find("bbox") != nullptr) return view;
+  const double beyond = system.zoom_of(*view, 1) - request.max_zoom;
+  if (!(beyond > 0)) return view;
+  return map_view(enlarged(sides, std::exp2(beyond)), request, 1, system.projection);
+}
+
 /// The format given by `f`.
 Result<TileFormat> format_of(const DocumentRequest& request) {
   const std::string* name = request.find("f");
@@ -131,7 +150,7 @@ Result<WindowRequest> parse_ogc_map(const std::vector<std::string>& layers,
   if (!format) return format.problem();
   const auto sides = sides_of(layers, **system, request);
   if (!sides) return sides.problem();
-  const auto view = map_view(*sides, request, 1, (*system)->projection);
+  const auto view = view_of(*sides, **system, request);
   if (!view) return view.problem();
   const auto background = background_of(request);
   if (!background) return background.problem();

@@ -14,6 +14,7 @@
 #include "server/base/nearest_name.h"
 #include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
+#include "server/documents/catalog.h"
 #include "server/documents/legend.h"
 #include "server/tiles/tile_matrix_set.h"
 
@@ -201,9 +202,11 @@ class CapabilitiesWriter {
       const ServedLayer* there = served_in(request_.dataset, config.name, *system);
       if (there != nullptr) add_bounds_in(*system, there->layer->bounds(), "        ");
     }
-    if (!config.attribution.empty()) {
+    const std::string attribution =
+        attribution_of(config.attribution, {&config.name, 1}, StyleQuery(), request_.dataset);
+    if (!attribution.empty()) {
       xml_ += fmt::format("        <Attribution><Title>{}</Title></Attribution>\n",
-                          xml_escape(config.attribution));
+                          xml_escape(attribution));
     }
     add_style(config.name, std::string(StyleBook::kDefaultName), {});
     for (const std::string& style : request_.styles.names()) {
@@ -233,18 +236,18 @@ class CapabilitiesWriter {
                         style, size->width, size->height, kWmsPng, link(address));
   }
 
-  /// A layer is drawn from its first zoom on, up to the zoom after its last.
+  /// A layer is drawn from its first zoom on, up to the zoom after its last; maps beyond the last
+  /// zoom of all are refused.
   void add_scales(const LayerConfig& config) {
-    const bool has_least = config.max_zoom < kMaxZoom;
     const bool has_most = config.min_zoom > 0;
-    const double least = has_least ? scale_denominator_of(config.max_zoom + 1) : 0;
+    const double least = scale_denominator_of(
+        std::max(config.min_zoom, std::min(config.max_zoom + 1, request_.max_zoom)));
     const double most = scale_denominator_of(config.min_zoom);
     if (is_new_) {
-      if (has_least)
-        xml_ += fmt::format("        <MinScaleDenominator>{}</MinScaleDenominator>\n", least);
+      xml_ += fmt::format("        <MinScaleDenominator>{}</MinScaleDenominator>\n", least);
       if (has_most)
         xml_ += fmt::format("        <MaxScaleDenominator>{}</MaxScaleDenominator>\n", most);
-    } else if (has_least || has_most) {
+    } else {
       // Diagonals of pixels on the ground.
       const double metres = kMetresPerPixel * std::numbers::sqrt2;
       xml_ += fmt::format("        <ScaleHint min=\"{}\" max=\"{}\"/>\n", least * metres,

@@ -61,16 +61,17 @@ std::string operation_xml(std::string_view name, const std::string& base_url) {
                      name, xml_escape(base_url), name == kGetCapabilities ? kFormats : "");
 }
 
-std::string limits_xml(const ServedLayer& served, const TileMatrixSet& set) {
+std::string limits_xml(const ServedLayer& served, const TileMatrixSet& set, double margin) {
   std::string xml = "        <TileMatrixSetLimits>\n";
   for (std::size_t i = 0; i < set.matrices.size(); ++i) {
     if (!has_tiles_of(served, set.matrices[i])) continue;
-    const TileLimits limits = wmts_limits(served, set, i);
+    const TileLimits limits = wmts_limits(served, set, i, margin);
     xml += fmt::format(
         "          <TileMatrixLimits><TileMatrix>{}</TileMatrix><MinTileRow>{}</MinTileRow>"
         "<MaxTileRow>{}</MaxTileRow><MinTileCol>{}</MinTileCol><MaxTileCol>{}</MaxTileCol>"
         "</TileMatrixLimits>\n",
-        set.matrices[i].id, limits.min_row, limits.max_row, limits.min_column, limits.max_column);
+        xml_escape(set.matrices[i].id), limits.min_row, limits.max_row, limits.min_column,
+        limits.max_column);
   }
   return xml + "        </TileMatrixSetLimits>\n";
 }
@@ -103,6 +104,26 @@ std::string resource_xml(std::string_view format, std::string_view type,
                      format, type, xml_escape(address));
 }
 
+/// The bounds in the systems of other planes, in the axis order of the authority: their sides are
+/// curves in degrees, so that clients cannot compute them from the bounds there.
+std::string plane_bounds_xml(const ServedLayer& served, const DocumentRequest& request) {
+  std::string xml;
+  for (const MapSystemPtr& system : map_systems_of(request.dataset, served.config.name)) {
+    if (system->grid.empty()) continue;
+    const ServedLayer* there = served_in(request.dataset, served.config.name, *system);
+    if (there == nullptr || there->layer->bounds().is_empty()) continue;
+    SystemBounds bounds = system->bounds_of(there->layer->bounds());
+    if (system->is_north_first) bounds = {bounds.south, bounds.west, bounds.north, bounds.east};
+    xml += fmt::format(R"(      <ows:BoundingBox crs="{}">
+        <ows:LowerCorner>{:.3f} {:.3f}</ows:LowerCorner>
+        <ows:UpperCorner>{:.3f} {:.3f}</ows:UpperCorner>
+      </ows:BoundingBox>
+)",
+                       system->urn, bounds.west, bounds.south, bounds.east, bounds.north);
+  }
+  return xml;
+}
+
 std::string layer_xml(const ServedLayer& served, const DocumentRequest& request) {
   const std::string& base_url = request.base_url;
   const LayerConfig& config = served.config;
@@ -120,6 +141,7 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
       <ows:Identifier>{}</ows:Identifier>
 )",
                      west, south, east, north, config.name);
+  xml += plane_bounds_xml(served, request);
   xml += style_xml(config.name, StyleBook::kDefaultName, base_url);
   for (const std::string& style : request.styles.names()) {
     xml += style_xml(config.name, style, base_url);
@@ -135,7 +157,7 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
         <TileMatrixSet>{}</TileMatrixSet>
 )",
                        set->id);
-    xml += limits_xml(*there, *set);
+    xml += limits_xml(*there, *set, wmts_margin(*there, request.styles));
     xml += "      </TileMatrixSetLink>\n";
   }
   const std::string tile =
@@ -154,7 +176,7 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
 /// "urn:ogc:def:wkss:OGC:1.0:GoogleMapsCompatible".
 std::string urn_of_scale_set(const TileMatrixSet& set) {
   return fmt::format("urn:ogc:def:wkss:OGC:1.0:{}",
-                     set.scale_set.substr(set.scale_set.rfind('/') + 1));
+                     xml_escape(set.scale_set.substr(set.scale_set.rfind('/') + 1)));
 }
 
 std::string matrix_set_xml(const TileMatrixSet& set) {

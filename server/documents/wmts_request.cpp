@@ -13,9 +13,11 @@
 
 #include "core/grid/web_mercator.h"
 #include "render/mask/mask.h"
+#include "render/mask/stroke.h"
 #include "server/data/layer_summary.h"
 #include "server/documents/key_value_pairs.h"
 #include "server/documents/ows_exception.h"
+#include "server/labels/label_style.h"
 #include "server/tiles/map_window.h"
 #include "server/tiles/window_request.h"
 
@@ -133,16 +135,45 @@ Result<std::vector<std::string>> layers_of(const std::string& list, const Datase
   return layers;
 }
 
+/// How far outside its bounds the layer may show something in a style, in pixels.
+double margin_of(const StyleQuery& style, const LayerConfig& config) {
+  constexpr double kHalfOfWidestLine = 16;
+  const auto find = [&](ParameterId parameter) {
+    const ParameterValue* value = style.find(config.name, parameter);
+    return value != nullptr ? value : config.style.find(config.name, parameter);
+  };
+  const auto number = [&find](ParameterId parameter, double usual) {
+    const ParameterValue* value = find(parameter);
+    const double* found = value == nullptr ? nullptr : std::get_if<double>(value);
+    return found == nullptr ? usual : *found;
+  };
+  Stroke stroke;
+  stroke.width = number(ParameterId::stroke_width, 1);
+  const ParameterValue* join = find(ParameterId::stroke_linejoin);
+  if (join != nullptr && format_value(*join) == "miter") stroke.join = LineJoin::miter;
+  const double of_shapes = stroke.reach(1) + number(ParameterId::grow, 0) / 2;
+  const LabelStyle usual;
+  const double of_labels = find(ParameterId::label) == nullptr
+                               ? 0
+                               : number(ParameterId::label_overhang, usual.overhang) +
+                                     number(ParameterId::label_halo_width, usual.halo_width) + 1;
+  return std::max({kHalfOfWidestLine, of_shapes, of_labels});
+}
+
 /// Of all layers together; nothing at scales at which none of them is drawn.
 std::optional<TileLimits> limits_of(std::span<const std::string> layers, const TileMatrixSet& set,
-                                    std::size_t matrix, const Dataset& dataset) {
+                                    std::size_t matrix, const StyleQuery& style,
+                                    const DocumentRequest& request) {
+  const Dataset& dataset = request.dataset;
   std::optional<TileLimits> all;
   for (const std::string& name : layers) {
     const ServedLayer& layer = dataset.layers()[*dataset.find(name)];
     if (!has_tiles_of(layer, set.matrices[matrix])) continue;
     const ServedLayer* there = served_in(dataset, name, *set.system);
     if (there == nullptr) continue;
-    const TileLimits limits = wmts_limits(*there, set, matrix);
+    const double margin =
+        std::max(wmts_margin(*there, request.styles), margin_of(style, there->config));
+    const TileLimits limits = wmts_limits(*there, set, matrix, margin);
     if (!all) all = limits;
     all->min_row = std::min(all->min_row, limits.min_row);
     all->max_row = std::max(all->max_row, limits.max_row);
@@ -153,10 +184,11 @@ std::optional<TileLimits> limits_of(std::span<const std::string> layers, const T
 }
 
 Result<TileId> tile_id_of(const TileParts& parts, const TileMatrixSet& set,
-                          std::span<const std::string> layers, const Dataset& dataset) {
+                          std::span<const std::string> layers, const StyleQuery& style,
+                          const DocumentRequest& request) {
   const auto matrix = matrix_in(set, parts.matrix);
   if (!matrix) return matrix.problem();
-  const auto limits = limits_of(layers, set, *matrix, dataset);
+  const auto limits = limits_of(layers, set, *matrix, style, request);
   if (!limits) {
     return ows_problem(404, ows::kTileOutOfRange, "TileMatrix",
                        "The layer is not drawn at this TileMatrix.", parts.matrix);
@@ -196,10 +228,10 @@ Result<TileRequest> tile_of(const TileParts& parts, const DocumentRequest& reque
     return ows_problem(404, ows::kInvalidParameterValue, "TileMatrixSet",
                        not_built(name, *set->system, request.dataset).detail, parts.matrix_set);
   }
-  const auto tile = tile_id_of(parts, *set, *layers, request.dataset);
-  if (!tile) return tile.problem();
   auto style = style_of(parts, *layers, request.styles);
   if (!style) return std::move(style).problem();
+  const auto tile = tile_id_of(parts, *set, *layers, *style, request);
+  if (!tile) return tile.problem();
   return TileRequest{*std::move(layers), *tile,           1,
                      *std::move(style),  TileFormat::png, std::move(set)};
 }
@@ -322,9 +354,18 @@ Result<WmtsRequest> parse_info_path(const DocumentRequest& request) {
 
 }  // namespace
 
-TileLimits wmts_limits(const ServedLayer& layer, const TileMatrixSet& set, std::size_t matrix) {
-  constexpr double kHalfOfWidestLine = 16;  // pixels
-  return set.limits_of(layer.layer->bounds(), matrix, kHalfOfWidestLine);
+double wmts_margin(const ServedLayer& layer, const StyleBook& styles) {
+  double margin = margin_of(StyleQuery(), layer.config);
+  for (const std::string& name : styles.names()) {
+    const auto style = styles.find(name);
+    if (style != nullptr) margin = std::max(margin, margin_of(*style, layer.config));
+  }
+  return margin;
+}
+
+TileLimits wmts_limits(const ServedLayer& layer, const TileMatrixSet& set, std::size_t matrix,
+                       double margin) {
+  return set.limits_of(layer.layer->bounds(), matrix, margin);
 }
 
 std::vector<TileMatrixSetPtr> wmts_sets(const DocumentRequest& request) {

@@ -41,9 +41,13 @@ struct WmtsFeatureInfoRequest {
 
 using WmtsRequest = std::variant<WmtsCapabilitiesRequest, TileRequest, WmtsFeatureInfoRequest>;
 
-/// The tiles of a matrix in which the layer may show something, with a margin for outlines. In
-/// WMTS, there are no tiles outside these.
-TileLimits wmts_limits(const ServedLayer& layer, const TileMatrixSet& set, std::size_t matrix);
+/// How far outside its bounds the layer may show something in its own style or in a named one, in
+/// pixels: outlines, grown features and labels.
+double wmts_margin(const ServedLayer& layer, const StyleBook& styles);
+/// The tiles of a matrix in which the layer may show something, with that margin. In WMTS, there
+/// are no tiles outside these, unless the style of a request needs a wider margin.
+TileLimits wmts_limits(const ServedLayer& layer, const TileMatrixSet& set, std::size_t matrix,
+                       double margin);
 /// The sets with tiles of some layer, without those whose rows are not counted from the north, as
 /// WMTS requires.
 std::vector<TileMatrixSetPtr> wmts_sets(const DocumentRequest& request);

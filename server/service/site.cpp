@@ -632,10 +632,16 @@ void Site::handle_document(const Documents& documents, const Target& target,
   if (!base) return respond(problem_response(base.problem()));
   std::string key =
       documents.may_be_kept ? fmt::format("{} {}", *base, request.target) : std::string();
-  const DocumentRequest asked{
-      *dataset,           *styles_,          *options_.fonts,     *std::move(base),
-      std::move(*path),   *std::move(query), options_.map_pixels, *options_.sets,
-      options_.max_layers};
+  const DocumentRequest asked{*dataset,
+                              *styles_,
+                              *options_.fonts,
+                              *std::move(base),
+                              std::move(*path),
+                              *std::move(query),
+                              options_.map_pixels,
+                              *options_.sets,
+                              options_.max_layers,
+                              options_.max_zoom};
   if (auto picture = documents.find_picture ? documents.find_picture(asked) : std::nullopt) {
     Result<PictureRequest>& found = *picture;
     return found ? handle_picture(*std::move(found), request, respond)

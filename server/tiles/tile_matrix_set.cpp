@@ -134,9 +134,13 @@ TileLimits TileMatrixSet::limits_of(const Box& box, std::size_t matrix, double p
       tiles.is_from_south ? bounds.south - tiles.origin_y : tiles.origin_y - bounds.north;
   const double last =
       tiles.is_from_south ? bounds.north - tiles.origin_y : tiles.origin_y - bounds.south;
-  return {tile_at(first - margin, height, tiles.height),
-          tile_at(last + margin, height, tiles.height),
-          tile_at(bounds.west - margin - tiles.west, width, tiles.width),
+  const std::uint32_t first_row = tile_at(first - margin, height, tiles.height);
+  const std::uint32_t last_row = tile_at(last + margin, height, tiles.height);
+  // The world repeats: the margin begins again at its other side.
+  const bool is_around = system->projection != Projection::plane &&
+                         std::max(-bounds.west, bounds.east) + margin > system->half_side;
+  if (is_around) return {first_row, last_row, 0, tiles.width - 1};
+  return {first_row, last_row, tile_at(bounds.west - margin - tiles.west, width, tiles.width),
           tile_at(bounds.east + margin - tiles.west, width, tiles.width)};
 }
 

@@ -135,6 +135,8 @@ TEST_F(GridsTest, DocumentsListWhatIsBuilt) {
   EXPECT_THAT(wmts, HasSubstr("<ows:Identifier>SwissLV95</ows:Identifier>"));
   EXPECT_THAT(wmts, HasSubstr("<ows:SupportedCRS>urn:ogc:def:crs:EPSG::2056</ows:SupportedCRS>"));
   EXPECT_THAT(wmts, HasSubstr("<TopLeftCorner>2420000 1350000</TopLeftCorner>"));
+  EXPECT_THAT(wmts, HasSubstr("<ows:BoundingBox crs=\"urn:ogc:def:crs:EPSG::2056\">\n"
+                              "        <ows:LowerCorner>2600000.00"));
   EXPECT_THAT(wmts, HasSubstr("UPSAntarcticWGS84Quad"));
   EXPECT_THAT(wmts, Not(HasSubstr("LAEAQuad")));
   const auto tilesets =

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/layer/layer_builder.h"
 #include "render/picture/png.h"
 #include "render/picture/webp.h"
 #include "tests/server/service/sample_site.h"
@@ -42,6 +43,34 @@ TEST_F(OgcMapTest, ShowsAllWithoutABox) {
   const Picture all = decode_png(*sample_.get("/ogc/map").body);
   EXPECT_EQ(all.width, 768) << "from the west of the world to 90 degrees east";
   EXPECT_EQ(all.height, 1024);
+}
+
+TEST_F(OgcMapTest, WithoutABoxIsNotBeyondTheLastZoom) {
+  std::vector<LayerBuilder> builders(1);
+  Rings rings;
+  rings.add(std::vector<Point>{{0, 0}, {9, 0}, {9, 9}, {0, 9}});
+  builders.front().add(0, rings);
+  FeatureTable features{std::vector<Field>{}};
+  features.append(1, std::vector<Value>{});
+  ServedLayer served;
+  served.config.name = "dot";
+  served.layer = LayerBuilder::join(builders, std::move(features));
+  sample_.data().set(std::make_shared<const Dataset>(std::vector<ServedLayer>{served}));
+  for (const std::string query :
+       {"", "?width=4096", "?height=30", "?width=300&height=20", "?crs=EPSG:4326"}) {
+    const auto map = sample_.get("/ogc/collections/dot/map" + query);
+    ASSERT_EQ(map.status, 200) << query << *map.body;
+    const Picture picture = decode_png(*map.body);
+    EXPECT_GT(picture.at(picture.width / 2, picture.height / 2).a, 100) << query;
+  }
+  SiteOptions options;
+  options.max_zoom = 2;
+  testing::SampleSite coarse(true, {}, options);
+  const auto map = coarse.get("/ogc/collections/rings/map");
+  ASSERT_EQ(map.status, 200) << *map.body;
+  EXPECT_EQ(decode_png(*map.body).at(2, 2).a, 0) << "beside the rings";
+  EXPECT_EQ(decode_png(*map.body).at(512, 512).a, 255);
+  EXPECT_EQ(coarse.get("/ogc/collections/rings/map?bbox=-90,-60,90,60").status, 400);
 }
 
 TEST_F(OgcMapTest, OfTheDatasetHasTheCollectionsThatAreAskedFor) {

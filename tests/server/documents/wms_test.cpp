@@ -171,6 +171,18 @@ TEST_F(WmsTest, CapabilitiesTellOfLayersStylesAndLegends) {
   }
 }
 
+TEST_F(WmsTest, CapabilitiesTellOfTheScaleBeyondWhichMapsAreRefused) {
+  EXPECT_THAT(*sample_.get("/wms?service=WMS&request=GetCapabilities").body,
+              HasSubstr("<MinScaleDenominator>33.3"))
+      << "zoom 24";
+  SiteOptions options;
+  options.max_zoom = 3;
+  testing::SampleSite coarse(true, {}, options);
+  const std::string xml = *coarse.get("/wms?service=WMS&request=GetCapabilities").body;
+  EXPECT_THAT(xml, HasSubstr("<MinScaleDenominator>69885283.0"));
+  EXPECT_THAT(xml, Not(HasSubstr("<MinScaleDenominator>8735660.3")));
+}
+
 TEST_F(WmsTest, CapabilitiesKeepTheStyleOfTheirQueryInAddresses) {
   const auto response = sample_.get(
       "/wms?service=WMS&request=GetCapabilities&rings.fill=%23f00&map=any&filter=a%3C%26b");

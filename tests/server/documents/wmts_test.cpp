@@ -7,6 +7,7 @@
 #include "core/layer/layer_builder.h"
 #include "server/base/xml_text.h"
 #include "server/config/load_config.h"
+#include "server/tiles/read_tile_matrix_set.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -211,7 +212,7 @@ TEST_F(WmtsTest, WhatIsWrongIsAnExceptionWithItsCodeAndItsParameter) {
       {kTile + "&layer=west", 400, "InvalidParameterValue", "Layer"},
       {"/wmts/rings/default/WebMercatorQuad/3/8/5.png", 404, "TileOutOfRange", "TileRow"},
       {"/wmts/west/default/WebMercatorQuad/6/0/0.png", 404, "TileOutOfRange", "TileMatrix"},
-      {"/wmts/west/default/WebMercatorQuad/5/0/18.png", 404, "TileOutOfRange", "TileCol"},
+      {"/wmts/rings/default/WebMercatorQuad/5/16/30.png", 404, "TileOutOfRange", "TileCol"},
       {"/wmts/nosuch/default/WebMercatorQuad/3/2/5.png", 404, "InvalidParameterValue", "Layer"},
       {"/wmts/rings/nosuch/WebMercatorQuad/3/2/5.png", 404, "InvalidParameterValue", "Style"},
       {"/wmts/rings/default/nosuch/3/2/5.png", 404, "InvalidParameterValue", "TileMatrixSet"},
@@ -237,6 +238,19 @@ TEST_F(WmtsTest, WhatIsWrongIsAnExceptionWithItsCodeAndItsParameter) {
                 HasSubstr("<ows:Exception exceptionCode=\"" + wrong.code + "\"" + locator + ">"))
         << wrong.target;
   }
+}
+
+TEST_F(WmtsTest, TilesBesideTheLayerShowWhatReachesIntoThem) {
+  const std::string beside = "/wmts/rings/default/WebMercatorQuad/3/3/0.png";
+  EXPECT_EQ(sample_.get(beside).status, 404) << "256 pixels west of the layer";
+  for (const char* style : {"?label=name&label-overhang=300", "?label=name&label-overhang=260"}) {
+    EXPECT_EQ(sample_.get(beside + style).status, 200) << style;
+  }
+  // "west" ends at the antimeridian: corners of its outline are at the other side, too.
+  const std::string style = "?stroke=red&stroke-width=20";
+  const auto around = sample_.get("/wmts/west/default/WebMercatorQuad/3/0/7.png" + style);
+  EXPECT_EQ(around.status, 200);
+  EXPECT_EQ(*around.body, *sample_.get("/tiles/west/3/7/0.png" + style).body);
 }
 
 TEST_F(WmtsTest, PixelsAndFormatsOfFeaturesAreChecked) {
@@ -276,6 +290,21 @@ TEST(WmtsLoadingTest, IsToldInItsOwnWords) {
   EXPECT_EQ(response.status, 503);
   EXPECT_EQ(response.header("Retry-After"), "1");
   EXPECT_THAT(*response.body, HasSubstr("exceptionCode=\"NoApplicableCode\">"));
+}
+
+TEST(WmtsSetsTest, NoNameOfASetBecomesMarkup) {
+  TileMatrixSets sets = TileMatrixSets::built_in();
+  sets.add(parse_tile_matrix_set(R"({"id": "own", "title": "<own>", "crs": "EPSG:3857",
+    "wellKnownScaleSet": "http://maps.example/<own>&", "tileMatrices": [{"id": "<0>&",
+    "scaleDenominator": 559082264.028717, "pointOfOrigin": [-20037508.34, 20037508.34],
+    "tileWidth": 256, "tileHeight": 256, "matrixWidth": 1, "matrixHeight": 1}]})"));
+  SiteOptions options;
+  options.sets = std::make_shared<const TileMatrixSets>(std::move(sets));
+  testing::SampleSite sample(true, {}, options);
+  const std::string xml = *sample.get("/wmts.xml").body;
+  for (const char* markup : {"<0>", "<own>", "&<", ">&<"}) EXPECT_THAT(xml, Not(HasSubstr(markup)));
+  EXPECT_THAT(xml, HasSubstr("<TileMatrix>&lt;0&gt;&amp;</TileMatrix>"));
+  EXPECT_THAT(xml, HasSubstr(":&lt;own&gt;&amp;</WellKnownScaleSet>"));
 }
 
 TEST(WmtsAttributesTest, NoAttributeBecomesMarkup) {

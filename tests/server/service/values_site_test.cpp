@@ -301,6 +301,10 @@ TEST_F(ValuesSiteTest, ReadsTablesOfTheConfigurationAgain) {
   EXPECT_EQ(json("/values")["tables"][0]["title"], "People");
   EXPECT_THAT(json("/tiles/columns.json?style=crowd")["attribution"].get<std::string>(),
               HasSubstr("counted by hand"));
+  EXPECT_THAT(json("/ogc/collections/columns/map/tiles/WebMercatorQuad?style=crowd")["attribution"]
+                  .get<std::string>(),
+              HasSubstr("counted by hand"));
+  EXPECT_FALSE(json("/ogc/collections/columns/map/tiles/WebMercatorQuad").contains("attribution"));
   EXPECT_EQ(json("/legend/columns.json?style=crowd")["layers"][0]["values_title"], "People");
   const std::string generation = json("/catalog")["generation"];
   serve("code,people\nC0,40\nC1,20\nC2,30\nC3,10\nC4,20\n");
