@@ -43,12 +43,12 @@ void print_if_any(const char* what, std::size_t count) {
   if (count > 0) fmt::print("  {}: {}\n", what, count);
 }
 
-void print_report(const ExportReport& report, const std::string& output) {
+void print_report(const ExportReport& report, const std::string& output, bool is_merging) {
   fmt::print(
       "{} ({}): {} features with {} polygons; {} of {} vertices kept, {} of these held by the "
-      "topology test; {} features left out as too small\n",
+      "topology test; {} features left out as too small{}\n",
       output, report.driver, report.written, report.polygons, report.vertices, report.all_vertices,
-      report.held, report.too_small);
+      report.held, report.too_small, is_merging ? " or as parts of the blocks of others" : "");
   print_if_any("corners rounded", report.corners.rounded);
   print_if_any("corners left sharp here, though tiles round them, to keep edges apart on the grid",
                report.corners.refused);
@@ -79,7 +79,7 @@ int run_export(const ExportArguments& arguments) {
     options.progress = [&progress](double share) { progress.show(share); };
     report = export_layer(arguments.file, arguments.output, options);
   }
-  print_report(report, arguments.output);
+  print_report(report, arguments.output, options.generalization.merge > 0);
   return 0;
 }
 

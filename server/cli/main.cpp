@@ -431,7 +431,7 @@ void add_diff(CLI::App& app, trapeze::DiffArguments& arguments) {
                       trapeze::listed(trapeze::kCertaintyNames.names()), arguments.certainty))
       ->type_name("NAME");
   diff->add_option("--format", arguments.format,
-                   fmt::format("{}. Default: text, one line z/x/y per tile",
+                   fmt::format("How to write the list: {}. Default: text, one line z/x/y per tile",
                                trapeze::listed(trapeze::kTileListNames.names())))
       ->type_name("NAME");
 }
@@ -473,8 +473,8 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
   command
       ->add_option(
           "--topology", arguments.topology,
-          fmt::format("{}. Default: {}. With fast, the test that prevents self-crossing polygons "
-                      "is skipped and crossings are noded",
+          fmt::format("The topology: {}. Default: {}. With fast, the test that prevents "
+                      "self-crossing polygons is skipped and crossings are noded",
                       trapeze::listed(trapeze::kTopologyNames.names()), arguments.topology))
       ->type_name("NAME");
   command
@@ -544,8 +544,8 @@ void add_seed(CLI::App& app, trapeze::SeedArguments& arguments) {
              });
   seed->add_option(
           "--format", arguments.format,
-          fmt::format("{}. Default: {}", trapeze::listed(trapeze::kTileFormatNames.names()),
-                      arguments.format))
+          fmt::format("The format of tiles: {}. Default: {}",
+                      trapeze::listed(trapeze::kTileFormatNames.names()), arguments.format))
       ->type_name("NAME");
   seed->add_option("--output", arguments.output,
                    "The output archive, .pmtiles or .mbtiles; any other name is a folder, "

@@ -18,10 +18,10 @@
 #include "core/layer/untested_layer.h"
 #include "server/base/content_hash.h"
 #include "server/data/fast_topology.h"
+#include "server/data/layer_problems.h"
 #include "server/data/load_progress.h"
 #include "server/data/note_summary.h"
 #include "server/data/source_files.h"
-#include "server/data/title_attribute.h"
 
 namespace trapeze {
 namespace {
@@ -50,20 +50,16 @@ void log_notes(const std::string& what, const LoadReport& report) {
 }
 
 void log_missing_title(const ServedLayer& served) {
-  const std::string& wanted = served.config.title_attribute;
-  if (wanted.empty() || title_field(served.layer->features(), wanted)) return;
-  spdlog::warn(fmt::format(R"(layer "{}" has no attribute "{}": its features have no title)",
-                           served.config.name, wanted));
+  const std::string problem =
+      find_title_problem(served.layer->features(), served.config.title_attribute);
+  if (!problem.empty()) spdlog::warn(fmt::format("layer \"{}\" {}", served.config.name, problem));
 }
 
 /// Logs problems of a layer in parts that do not prevent it from being served.
 void log_parts(const std::string& what, const PreparedParts& parts) {
   spdlog::info(fmt::format("{}: {} parts, each loaded when needed", what, parts.parts().size()));
-  if (parts.overview() != nullptr || parts.parts().size() == 1) return;
-  spdlog::warn(fmt::format(
-      "{}: there is no overview, so a tile of a low zoom reads every part; `trapeze prepare "
-      "--join` makes one",
-      what));
+  const std::string problem = find_overview_problem(parts);
+  if (!problem.empty()) spdlog::warn(fmt::format("{}: {}", what, problem));
 }
 
 void log_report(const ServedLayer& served) {
@@ -148,8 +144,10 @@ class SharedProgress {
     stalls_.finish(layer);
   }
 
-  /// The layer is ready to be served.
+  /// The layer is ready to be served, however long others take.
   void finish(std::size_t layer) {
+    const std::lock_guard lock(mutex_);
+    stalls_.finish(layer);
     if (told_ != nullptr) told_->finish(layer);
   }
 

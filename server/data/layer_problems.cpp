@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/open_layer.h"
-#include "core/io/prepared/prepared_parts.h"
 #include "core/io/source/change_feed.h"
+#include "core/io/source/source_name.h"
 #include "server/data/dataset.h"
 #include "server/data/fast_topology.h"
+#include "server/data/title_attribute.h"
 
 namespace trapeze {
 namespace {
@@ -34,11 +36,45 @@ const char* key_of(OpenPart part, const LayerConfig& layer) {
   return layer.prepared.empty() ? "file" : "prepared";
 }
 
-/// A message if a prepared layer has too many skipped features; empty if not.
-std::string find_prepared_excess(const LayerConfig& layer) {
-  const std::string& file = layer.file_to_open();
-  if (!is_pattern_of_files(file) && !is_prepared_file(file)) return {};
-  return find_excess(open_layer(file, how_to_open(layer)).report, layer.max_skipped);
+std::string words_without_title(const std::string& title_attribute) {
+  return "has no attribute \"" + title_attribute + "\": its features have no title";
+}
+
+bool is_prepared(const LayerConfig& layer) {
+  return is_pattern_of_files(layer.file_to_open()) || is_prepared_file(layer.file_to_open());
+}
+
+/// The problems of a prepared layer that can be opened.
+std::vector<LayerProblem> find_prepared_problems(const LayerConfig& layer) {
+  const LoadedLayer loaded = open_layer(layer.file_to_open(), how_to_open(layer));
+  const std::string name = name_of_source(layer.file_to_open()) + ": ";
+  const char* file = key_of(OpenPart::file, layer);
+  std::vector<LayerProblem> problems;
+  if (std::string excess = find_excess(loaded.report, layer.max_skipped); !excess.empty()) {
+    problems.push_back({"max_skipped", std::nullopt, std::move(excess), false});
+  }
+  for (const std::string& warning : loaded.report.warnings) {
+    problems.push_back({file, std::nullopt, name + warning, true});
+  }
+  if (loaded.parts != nullptr) {
+    const std::string overview = find_overview_problem(*loaded.parts);
+    if (!overview.empty()) problems.push_back({file, std::nullopt, name + overview, true});
+  }
+  const std::string title = find_title_problem(loaded.layer->features(), layer.title_attribute);
+  if (!title.empty()) problems.push_back({"title_attribute", std::nullopt, name + title, true});
+  return problems;
+}
+
+/// Whether a source that can be opened lacks the attribute that is to name its features.
+bool lacks_title(const LayerConfig& layer) {
+  if (layer.title_attribute.empty()) return false;
+  OpenOptions options = how_to_open(layer);
+  auto& kept = options.selection.attributes;
+  if (kept) return std::ranges::find(*kept, layer.title_attribute) == kept->end();
+  kept = {layer.title_attribute};
+  const std::vector<OpenFinding> findings = examine_layer(layer.file_to_open(), options);
+  return std::ranges::any_of(
+      findings, [](const OpenFinding& finding) { return finding.part == OpenPart::attributes; });
 }
 
 /// A message if the changes of a live layer cannot be queried; empty if they can.
@@ -69,10 +105,27 @@ std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer) {
     const char* key = layer.fast_topology ? "fast_topology" : "style";
     problems.push_back({key, std::nullopt, std::move(topology), false});
   }
-  if (!problems.empty()) return problems;  // a prepared file has no warnings
-  std::string excess = find_prepared_excess(layer);
-  if (!excess.empty()) problems.push_back({"max_skipped", std::nullopt, std::move(excess), false});
+  if (!std::ranges::all_of(problems, &LayerProblem::is_warning)) return problems;
+  if (is_prepared(layer)) {
+    std::ranges::move(find_prepared_problems(layer), std::back_inserter(problems));
+  } else if (lacks_title(layer)) {
+    problems.push_back(
+        {"title_attribute", std::nullopt,
+         name_of_source(layer.file_to_open()) + ": " + words_without_title(layer.title_attribute),
+         true});
+  }
   return problems;
+}
+
+std::string find_title_problem(const FeatureTable& features, const std::string& title_attribute) {
+  if (title_attribute.empty() || title_field(features, title_attribute)) return {};
+  return words_without_title(title_attribute);
+}
+
+std::string find_overview_problem(const PreparedParts& parts) {
+  if (parts.overview() != nullptr || parts.parts().size() == 1) return {};
+  return "there is no overview, so a tile of a low zoom reads every part; `trapeze prepare "
+         "--join` makes one";
 }
 
 }  // namespace trapeze

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,9 +16,43 @@ namespace {
 
 constexpr auto kBarInterval = std::chrono::milliseconds(100);
 constexpr auto kLineInterval = std::chrono::seconds(5);
-constexpr int kBarWidth = 40;
+constexpr std::size_t kBarWidth = 40;
+constexpr std::size_t kUsualColumns = 80;
+
+std::size_t columns_of_terminal() {
+  winsize size = {};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kUsualColumns;
+  return size.ws_col;
+}
+
+/// The end of a name, in at most that many bytes, which begins with "..." if it is not all of it.
+std::string end_of_name(const std::string& name, std::size_t most) {
+  constexpr std::string_view kCut = "...";
+  if (name.size() <= most) return name;
+  if (most <= kCut.size()) return {};
+  std::size_t begin = name.size() - (most - kCut.size());
+  const auto is_within_letter = [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) == 0x80;
+  };
+  while (begin < name.size() && is_within_letter(name[begin])) ++begin;
+  return std::string(kCut) + name.substr(begin);
+}
 
 }  // namespace
+
+std::string progress_bar(const std::string& name, double share, std::size_t columns) {
+  constexpr std::string_view kRest = " [] 100 %";
+  constexpr std::size_t kLeastBar = 10;
+  const std::string percent = share < 0 ? "  ? %" : fmt::format("{:3.0f} %", share * 100);
+  // A line that reaches the last column may wrap.
+  if (columns <= kRest.size() + kLeastBar) return percent.size() < columns ? percent : "";
+  const std::size_t room = columns - 1 - kRest.size();
+  const std::size_t bar = std::clamp(room - std::min(name.size(), room), kLeastBar, kBarWidth);
+  const auto full =
+      static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(bar));
+  return fmt::format("{} [{}{}] {}", end_of_name(name, room - bar), std::string(full, '#'),
+                     std::string(bar - full, '.'), percent);
+}
 
 LoadProgress::LoadProgress(const std::string& name)
     : name_(name_of_source(name)),
@@ -43,10 +78,7 @@ void LoadProgress::show(double share) {
 }
 
 void LoadProgress::draw_bar(double share) const {
-  const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * kBarWidth);
-  const std::string bar = std::string(full, '#') + std::string(kBarWidth - full, '.');
-  const std::string percent = share < 0 ? "  ?" : fmt::format("{:3.0f}", share * 100);
-  fmt::print(stderr, "\r\x1b[K{} [{}] {} %", name_, bar, percent);
+  fmt::print(stderr, "\r\x1b[K{}", progress_bar(name_, share, columns_of_terminal()));
   std::fflush(stderr);
 }
 

@@ -12,6 +12,10 @@
 
 namespace trapeze {
 
+/// A line with a bar that fits into a terminal of that many columns: a long name is cut at its
+/// beginning. `share` is in [0, 1], or negative if unknown.
+std::string progress_bar(const std::string& name, double share, std::size_t columns);
+
 /// Shows a bar if standard error is a terminal, otherwise logs a line from time to time.
 class LoadProgress {
  public:

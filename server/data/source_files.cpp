@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -64,7 +65,9 @@ std::string state_of_files(const std::vector<std::string>& paths) {
   std::string state;
   for (const std::string& path : paths) {
     struct stat status {};
-    const bool is_there = stat(path.c_str(), &status) == 0;
+    // A file that must not be read counts as missing too: it is read once that has been put right,
+    // which changes neither its size nor its time.
+    const bool is_there = stat(path.c_str(), &status) == 0 && access(path.c_str(), R_OK) == 0;
     // An empty file counts as missing: reading an SQLite database may create an empty log and
     // remove it.
     if (!is_there || (S_ISREG(status.st_mode) && status.st_size == 0)) {

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/io/file/prepared_file.h"
+#include "core/io/prepared/prepared_parts.h"
 #include "render/make_renderer.h"
 #include "server/base/failure_words.h"
 #include "server/data/dataset.h"
@@ -53,6 +55,7 @@ class ConfigCheck {
     for (const auto& [name, style] : config_.styles) check_names("styles." + name, style);
     for (const LayerConfig& layer : config_.layers) {
       check_names(fmt::format("layer.{}.style", layer.name), layer.style);
+      check_own_style(layer);
       for (const LayerConfig& on_grid : with_grids({layer})) {
         // All grids share a source.
         const bool is_own = on_grid.grid.empty() || on_grid.file_to_open() != layer.file_to_open();
@@ -140,6 +143,24 @@ class ConfigCheck {
       const auto* choice = std::get_if<TableChoice>(&each.value);
       if (choice == nullptr || config_.values.contains(choice->name)) continue;
       note(setting, fmt::format("there is no table [values.{}]", choice->name));
+    }
+  }
+
+  /// Parameters with which every tile in the layer's own style would be refused, as far as they can
+  /// be known without its attributes.
+  void check_own_style(const LayerConfig& layer) {
+    const std::string setting = fmt::format("layer.{}.style", layer.name);
+    const auto sets = [&layer](ParameterId parameter) {
+      const ParameterValue* value = layer.style.find(layer.name, parameter);
+      return value != nullptr && *value != ParameterValue(0.0);
+    };
+    if (sets(ParameterId::grow) && sets(ParameterId::smooth)) {
+      note(setting, "grow and smooth exclude each other");
+    }
+    const bool is_merged = layer.merge.value_or(0) > 0 || !layer.prepared.empty() ||
+                           is_prepared_file(layer.file) || is_pattern_of_files(layer.file);
+    if (sets(ParameterId::merge) && !is_merged) {
+      note(setting, "merge is only for layers with merge, the distance they are built for");
     }
   }
 

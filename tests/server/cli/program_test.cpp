@@ -542,6 +542,29 @@ TEST_F(ConfigCheckTest, TellsAllThatIsWrongAtOnceWithTheEnvironment) {
   EXPECT_EQ(std::ranges::count(says, '\n'), 9) << says;
 }
 
+TEST_F(ConfigCheckTest, FindsStylesInWhichNoTileIsDrawn) {
+  for (const auto& [style, says] : {std::pair("grow = 3, smooth = 3", "exclude each other"),
+                                    std::pair("merge = 3", "only for layers with merge")}) {
+    write("trapeze.toml",
+          std::string("[[layer]]\nname = \"a\"\nfile = \"map.gpkg\"\nstyle = { ") + style + " }");
+    const auto [status, said] = check();
+    EXPECT_EQ(status, 1);
+    EXPECT_THAT(said, AllOf(HasSubstr("layer.a.style: "), HasSubstr(says)));
+  }
+}
+
+TEST_F(ConfigCheckTest, WarnsOfFeaturesWithoutTheirTitle) {
+  for (const char* layer : {"file = \"map.gpkg\"", "prepared = \"map.trapeze\"",
+                            "file = \"map.gpkg\"\nattributes = [\"trapeze_id\"]"}) {
+    write("trapeze.toml",
+          std::string("[[layer]]\nname = \"a\"\ntitle_attribute = \"colour\"\n") + layer);
+    const auto [status, says] = check();
+    EXPECT_EQ(status, 0) << says;
+    EXPECT_THAT(says, HasSubstr(":3:19: warning: layer.a.title_attribute: "));
+    EXPECT_THAT(says, HasSubstr("has no attribute \"colour\": its features have no title"));
+  }
+}
+
 TEST_F(ConfigCheckTest, WarnsOfWhatTheServerWarnsOfAndStartsWith) {
   write("plain.gml",
         R"(<ogr:FeatureCollection xmlns:ogr="http://ogr.maptools.org/")"

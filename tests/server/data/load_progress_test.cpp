@@ -12,6 +12,21 @@ namespace {
 
 using namespace std::chrono_literals;
 
+TEST(ProgressBarTest, FitsIntoTheTerminal) {
+  const std::string name = "/srv/maps/b\u00e2timents/" + std::string(60, 'x') + ".gpkg";
+  for (std::size_t columns = 0; columns < 200; ++columns) {
+    for (const double share : {-1.0, 0.0, 0.5, 1.0}) {
+      const std::string bar = progress_bar(name, share, columns);
+      EXPECT_LE(bar.size(), columns == 0 ? 0 : columns - 1);
+      EXPECT_LE(progress_bar("a", share, columns).size(), columns == 0 ? 0 : columns - 1);
+    }
+  }
+  EXPECT_EQ(progress_bar("a.fgb", 0.5, 80),
+            "a.fgb [" + std::string(20, '#') + std::string(20, '.') + "]  50 %");
+  EXPECT_EQ(progress_bar("/srv/maps/buildings.fgb", 0.5, 40),
+            "...aps/buildings.fgb [#####.....]  50 %");
+}
+
 class StallWatchTest : public ::testing::Test {
  protected:
   void SetUp() override {

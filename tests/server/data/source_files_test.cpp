@@ -1,7 +1,9 @@
 #include "server/data/source_files.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,17 @@ TEST(SourceFilesTest, ChangesThatAreStillInTheWriteAheadLogAreSeen) {
   EXPECT_NE(changed, before);
   folder.write("a.gpkg-wal", "one change, another one");
   EXPECT_NE(state_of_files(files), changed);
+}
+
+TEST(SourceFilesTest, AFileThatMustNotBeReadIsSeenAgainOnceItMay) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const TemporaryFolder folder;
+  const std::vector<std::string> files = files_of(folder.write("a.gpkg", "pages"));
+  const std::string before = state_of_files(files);
+  std::filesystem::permissions(files[0], std::filesystem::perms::none);
+  EXPECT_NE(state_of_files(files), before);
+  std::filesystem::permissions(files[0], std::filesystem::perms::owner_read);
+  EXPECT_EQ(state_of_files(files), before);
 }
 
 TEST(SourceFilesTest, ALayerWithAWriteAheadLogIsNeverKnownToBeTheSame) {
