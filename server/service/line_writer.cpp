@@ -38,6 +38,14 @@ int open_at_end(const std::string& path) {
   throw std::runtime_error(problem_words(path, errno));
 }
 
+/// Whether both write to the same file, which may have been opened twice.
+bool are_same(const LineFile& a, const LineFile& b) {
+  struct stat status_a {};
+  struct stat status_b {};
+  return fstat(a.descriptor(), &status_a) == 0 && fstat(b.descriptor(), &status_b) == 0 &&
+         status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
+}
+
 }  // namespace
 
 LineFile::LineFile(const std::string& target) {
@@ -153,7 +161,8 @@ void LineWriter::work() {
 /// Writes in pieces that a pipe accepts as a whole once it has room, so that the write does not
 /// block.
 bool LineWriter::put(const Line& line) {
-  const std::string text = (is_line_broken_ ? "\n" : "") + line.text;
+  const bool is_line_broken = broken_ != nullptr && are_same(*broken_, *line.file);
+  const std::string text = (is_line_broken ? "\n" : "") + line.text;
   std::size_t done = 0;
   while (done < text.size()) {
     if (line.file->may_be_full() && !wait_for_room(*line.file)) return false;
@@ -163,11 +172,11 @@ bool LineWriter::put(const Line& line) {
       done += static_cast<std::size_t>(written);
     } else if (errno != EINTR && errno != EAGAIN) {
       note_failure(errno);
-      is_line_broken_ = is_line_broken_ || done > 0;
+      if (done > 0) broken_ = line.file;
       return false;
     }
   }
-  is_line_broken_ = false;
+  broken_ = nullptr;
   has_failed_ = false;
   return true;
 }

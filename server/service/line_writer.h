@@ -80,8 +80,9 @@ class LineWriter {
   void tell_what_is_lost();
 
   const Events events_;
-  bool has_failed_ = false;      // whether writing the last line failed; used by the thread only
-  bool is_line_broken_ = false;  // whether the last line is incomplete; used by the thread only
+  bool has_failed_ = false;  // whether writing the last line failed; used by the thread only
+  /// The file whose last line is incomplete; null: none. Used by the thread only.
+  std::shared_ptr<const LineFile> broken_;
 
   mutable std::mutex mutex_;  // guards everything below
   std::condition_variable wake_;

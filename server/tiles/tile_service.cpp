@@ -250,25 +250,29 @@ void TileService::withdraw(const Ticket& ticket) {
   const auto flight = ticket.flight_.lock();
   if (flight == nullptr) return;
   Callback callback;
+  bool was_waiting = false;
   {
     const std::lock_guard lock(mutex_);
     if (ticket.number_ >= flight->askers.size()) return;  // all clients have been answered
     callback = std::exchange(flight->askers[ticket.number_].callback, nullptr);
     if (callback == nullptr) return;
-    if (--flight->wanted == 0) give_up(flight);
+    if (--flight->wanted == 0) was_waiting = give_up(flight);
   }
+  if (was_waiting) tell({TileOutcome::withdrawn, {}});
   callback({TileOutcome::withdrawn, {}});
 }
 
 // A waiting tile is removed immediately; a worker that is drawing one notices before long.
-void TileService::give_up(const std::shared_ptr<Flight>& flight) {
+bool TileService::give_up(const std::shared_ptr<Flight>& flight) {
   flight->cancellation.cancel();
   for (Queue* queue : {&queue_of(flight->order.cost), &awaiting_labels_}) {
     const auto waiting = std::ranges::find(*queue, flight);
     if (waiting == queue->end()) continue;
     queue->erase(waiting);
-    return forget(flight);
+    forget(flight);
+    return true;
   }
+  return false;
 }
 
 void TileService::forget(const std::shared_ptr<Flight>& flight) {

@@ -220,7 +220,8 @@ class TileService {
   /// Removes and returns a tile that has waited too long for its labels; null if there is none.
   std::shared_ptr<Flight> take_late();
   Ticket join(const std::shared_ptr<Flight>& flight, Clock::time_point now, Asker asker) const;
-  void give_up(const std::shared_ptr<Flight>& flight);
+  /// Whether it was waiting: no worker will tell what became of it.
+  bool give_up(const std::shared_ptr<Flight>& flight);
   void forget(const std::shared_ptr<Flight>& flight);
   void draw(TilePainter& painter, const Flights& flights);
   void answer(TilePainter& painter, const Flights& flights);

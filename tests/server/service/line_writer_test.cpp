@@ -2,10 +2,12 @@
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -112,6 +114,34 @@ TEST(LineWriterTest, AFullDiskIsToldOnceAndWhatWasLostWhenThereIsRoomAgain) {
   EXPECT_THAT(told.failures, ElementsAre("No space left on device"));
   EXPECT_EQ(told.lost, 10u);
   EXPECT_EQ(told.times, 1);
+}
+
+TEST(LineWriterTest, ALineThatIsCutOffIsEndedInItsOwnFileOnly) {
+  const TemporaryFolder folder;
+  const std::string old = folder.file("old");
+  LineWriter writer(open_lines(old));
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const auto earlier = std::signal(SIGXFSZ, SIG_IGN);
+  const auto cut_off = [&] {
+    const rlimit low{4, limit.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
+    writer.write("incomplete");
+    writer.flush(20s);
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  };
+  cut_off();
+  writer.redirect(open_lines(old));  // the log was not moved
+  writer.write("same");
+  writer.flush(20s);
+  EXPECT_EQ(read_file(old), "inco\nsame\n");
+  writer.redirect(open_lines(folder.file("older")));
+  cut_off();
+  writer.redirect(open_lines(folder.file("new")));
+  writer.write("kept");
+  writer.flush(20s);
+  std::signal(SIGXFSZ, earlier);
+  EXPECT_EQ(read_file(folder.file("new")), "kept\n");
 }
 
 TEST(LineWriterTest, EndsAlthoughAPipeIsNotRead) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <atomic>
 #include <future>
 
@@ -231,14 +232,19 @@ TEST_F(TileServiceTest, WhatNobodyWantsAnyLongerIsNotDrawn) {
 }
 
 TEST_F(TileServiceTest, WhatNobodyWantsAnyLongerIsObservedAsWithdrawnAndNotAsLate) {
-  std::promise<TileOutcome> observed;
+  std::array<std::promise<TileOutcome>, 2> observed;
+  auto next = observed.begin();
   TileServiceOptions options;
-  options.observe = [&](const TileAnswer& answer) { observed.set_value(answer.outcome); };
+  options.observe = [&](const TileAnswer& answer) { (next++)->set_value(answer.outcome); };
   start(options);
   auto drawing = submit(0);
   wait_until_drawing(1);
+  const TileService::Ticket of_drawing = ticket_;
+  auto waiting = submit(1);
   service_->withdraw(ticket_);
-  EXPECT_EQ(observed.get_future().get(), TileOutcome::withdrawn);
+  EXPECT_EQ(observed[0].get_future().get(), TileOutcome::withdrawn) << "though no worker has it";
+  service_->withdraw(of_drawing);
+  EXPECT_EQ(observed[1].get_future().get(), TileOutcome::withdrawn);
   service_.reset();
 }
 
