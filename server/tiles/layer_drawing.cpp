@@ -909,15 +909,17 @@ void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_
   if (ranges.empty() || colour.a == 0) return;
   Lines& lines = lines_of(colour);
   std::vector<SideOf> in_common;
-  // Where others grow, features that overlap others keep their shape. As whether those others are
-  // near depends on the picture, their edges must not: they are those that add_stack() adds.
+  // Where others grow, features that overlap others keep their shape, and lines with joins are
+  // joined only with lines of their own kind. As whether those others are near depends on the
+  // picture, their edges must not: they are those that add_stack() adds.
+  const bool are_apart = has_growth() || lines.points.is_joined;
   std::vector<std::uint32_t> unmoved;
-  std::vector<std::uint32_t>& of_overlapping = has_growth() ? unmoved : lines.sides;
+  std::vector<std::uint32_t>& of_overlapping = are_apart ? unmoved : lines.sides;
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
     const auto is_alone = [&](std::uint32_t row) {
       return row == Layer::kNoFeature || layer_->overlaps().of(row).empty();
     };
-    const bool may_move = !has_growth() || is_alone(layer_->feature_of(i));
+    const bool may_move = !are_apart || is_alone(layer_->feature_of(i));
     add_sides_of(i, may_move ? lines.sides : of_overlapping, in_common);
   });
   append_outer(in_common, of_overlapping);

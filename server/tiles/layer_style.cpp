@@ -313,12 +313,13 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
     if (wanted.kind == ColourClass::Kind::value) {
       value = read_as(field.type, wanted.value);
       if (!value) {
-        const std::string takes =
-            field.type == FieldType::integer ? "integers as values" : "numbers as values";
+        const bool is_integer = field.type == FieldType::integer;
         return Problem{400,
-                       fmt::format("The attribute {} holds numbers, and \"{}\" is not a number.",
-                                   field.name, wanted.value),
-                       "classes", wanted.value, takes};
+                       fmt::format("The attribute {} holds {}, and \"{}\" is not {}.", field.name,
+                                   is_integer ? "integers" : "numbers", wanted.value,
+                                   is_integer ? "an integer" : "a number"),
+                       "classes", wanted.value,
+                       is_integer ? "integers as values" : "numbers as values"};
       }
     }
     making.style.classing.values.push_back(std::move(value));

@@ -199,6 +199,31 @@ TEST_F(OutlinePicturesTest, CornersOfABorderThatLiesUnderOthersAreJoined) {
   }
 }
 
+// Whether a feature is cut, because another one lies over it, depends on the picture.
+TEST_F(OutlinePicturesTest, JoinsWhereThreeMeetDoNotDependOnWhatLiesOverThemElsewhere) {
+  const auto ring = [](std::initializer_list<Point> points) {
+    Rings rings;
+    rings.points = points;
+    rings.close_ring();
+    return rings;
+  };
+  const Point meeting = point_at(200, 100);
+  serve(
+      {ring({point_at(40, 100), meeting, point_at(190, 60), point_at(40, 60)}),
+       ring({meeting, point_at(230, 80), point_at(190, 60)}),
+       ring({point_at(40, 100), point_at(40, 140), point_at(230, 140), point_at(230, 80), meeting}),
+       ring({point_at(60, 70), point_at(60, 90), point_at(100, 90), point_at(100, 70)})},
+      CoverageMode::automatic);
+  for (const std::string join : {"bevel", "miter"}) {
+    SCOPED_TRACE(join);
+    const std::string style = "fill=00000002&quality=exact&stroke=000&stroke-linejoin=" + join;
+    const Picture parent = tile("0/0/0@2x", style + "&stroke-width=3");
+    const std::string of_child = style + "&stroke-width=6";
+    testing::expect_children_are_alike(parent, {tile("1/0/0", of_child), tile("1/1/0", of_child),
+                                                tile("1/0/1", of_child), tile("1/1/1", of_child)});
+  }
+}
+
 TEST_F(OutlinePicturesTest, CornersThatStaySharpAreJoined) {
   // The second is in the triangle where the inner corner of the first would be rounded.
   serve({polygon({point_at(60, 60), point_at(60, 120), point_at(90, 120), point_at(90, 90),
