@@ -152,13 +152,15 @@ bool ChangeLog::is_comparing() const {
   return is_comparing_;
 }
 
-void ChangeLog::note(std::shared_ptr<const Dataset> before, std::shared_ptr<const Dataset> after) {
+void ChangeLog::note(std::shared_ptr<const Dataset> before, std::shared_ptr<const Dataset> after,
+                     Memory memory) {
   if (before->generation() == after->generation()) return;
   auto step = std::make_shared<Step>();
   step->since = before->generation();
   step->generation = after->generation();
   step->before = std::move(before);
   step->after = std::move(after);
+  step->memory = memory;
   {
     const std::lock_guard lock(mutex_);
     steps_.push_back(std::move(step));

@@ -81,28 +81,18 @@ std::optional<Place> place_inside(const TrueFeature& feature) {
   return std::nullopt;
 }
 
-constexpr Limits kLines{1, 0.002};
-
 // The actual distances are about four fifths of these limits.
 const std::vector<Exception> kExceptions = {
     // As below, and smaller scales, zooms 4 and 6, where coasts are denser.
-    {"europe_countries", "degrees, classes and outline", {2, 0.0026}},
-    {"europe_countries", "degrees, outline", {1.3, 0.002}},
-    // A line that is off by a quarter of a pixel loses up to half of its ink. Where lines are
-    // closer together than they are wide, the greatest value of a pixel counts, not their joint
-    // coverage (see render/mask/stroke.h). Lines of features that are narrower than the tolerance
-    // are not hidden by features over them.
-    {"europe_countries", "outline", kLines},
-    {"kobroor", "outline", kLines},
-    {"lands_complex", "outline", kLines},
-    {"usa48_land", "outline", kLines},
-    {"shenzhen_water", "outline", kLines},
-    {"malta_natural", "outline", kLines},
-    {"malta_buildings", "outline", {1.5, 0.001}},
-    {"malta_landuse", "outline", {4.2, 0.008}},
-    {"melbourne_natural", "outline", {2.3, 0.0045}},
-    {"shenzhen_buildings", "outline", {4, 0.003}},
-    {"melbourne_landuse", "outline", {9, 0.031}},
+    {"europe_countries", "degrees, classes and outline", {1.7, 0.0012}},
+    // Where thousands of polygons are hardly larger than lines are wide, lines that are off by a
+    // quarter of a pixel lose up to half of their ink, and those of features that are narrower than
+    // the tolerance are not there, or not hidden by features over them.
+    {"malta_buildings", "outline", {1.5, 0.0005}},
+    {"malta_landuse", "outline", {3.2, 0.004}},
+    {"melbourne_natural", "outline", {2, 0.004}},
+    {"shenzhen_buildings", "outline", {3.9, 0.0008}},
+    {"melbourne_landuse", "outline", {7.8, 0.023}},
     // Where thousands of polygons are hardly larger than a pixel, or hardly a pixel apart, nearly
     // every pixel has edges that are up to a quarter of a pixel off, and errors of that size add
     // up.

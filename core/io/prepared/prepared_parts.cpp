@@ -166,10 +166,12 @@ Found find_parts(const std::vector<std::string>& files, const PreparedDemands& d
     if (!summary.part) {
       fail(file, "is a whole layer, not a part of one: serve it by its own name");
     }
-    const Part same = earlier_part(earlier, file, summary);
-    Part part = same == nullptr
-                    ? std::make_shared<const PreparedPart>(file, std::move(summary))
-                    : std::make_shared<const PreparedPart>(file, std::move(summary), *same);
+    Part part = earlier_part(earlier, file, summary);
+    if (part == nullptr) {
+      part = std::make_shared<const PreparedPart>(file, std::move(summary));
+    } else if (!are_of_one_state(part->summary().source, summary.source)) {
+      part = std::make_shared<const PreparedPart>(file, std::move(summary), *part);
+    }
     if (!part->number().is_overview()) {
       found.parts.push_back(std::move(part));
     } else if (found.overview == nullptr) {

@@ -44,7 +44,7 @@ TEST(HalfPlanesTest, HoldTheirShareOfThePixel) {
         within += x * dx + y * dy <= offset;
       }
       const std::uint64_t samples = table.within(direction, offset);
-      EXPECT_NEAR(share_of(samples), within / 4096.0, 0.045) << direction << " " << offset;
+      EXPECT_NEAR(share_of(samples), within / 4096.0, 0.04) << direction << " " << offset;
       EXPECT_EQ(samples, table.within(direction + HalfPlanes::kDirections, offset)) << "a turn";
     }
     EXPECT_EQ(table.within(direction, 0.72f), ~std::uint64_t{0});

