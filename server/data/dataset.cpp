@@ -18,7 +18,7 @@
 #include "core/layer/untested_layer.h"
 #include "server/base/content_hash.h"
 #include "server/data/fast_topology.h"
-#include "server/data/layer_problems.h"
+#include "server/data/layer_warnings.h"
 #include "server/data/load_progress.h"
 #include "server/data/note_summary.h"
 #include "server/data/source_files.h"

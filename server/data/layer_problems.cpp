@@ -7,11 +7,12 @@
 
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/open_layer.h"
+#include "core/io/prepared/prepared_parts.h"
 #include "core/io/source/change_feed.h"
 #include "core/io/source/source_name.h"
 #include "server/data/dataset.h"
 #include "server/data/fast_topology.h"
-#include "server/data/title_attribute.h"
+#include "server/data/layer_warnings.h"
 
 namespace trapeze {
 namespace {
@@ -34,10 +35,6 @@ const char* key_of(OpenPart part, const LayerConfig& layer) {
       break;
   }
   return layer.prepared.empty() ? "file" : "prepared";
-}
-
-std::string words_without_title(const std::string& title_attribute) {
-  return "has no attribute \"" + title_attribute + "\": its features have no title";
 }
 
 bool is_prepared(const LayerConfig& layer) {
@@ -111,21 +108,10 @@ std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer) {
   } else if (lacks_title(layer)) {
     problems.push_back(
         {"title_attribute", std::nullopt,
-         name_of_source(layer.file_to_open()) + ": " + words_without_title(layer.title_attribute),
+         name_of_source(layer.file_to_open()) + ": " + without_title_words(layer.title_attribute),
          true});
   }
   return problems;
-}
-
-std::string find_title_problem(const FeatureTable& features, const std::string& title_attribute) {
-  if (title_attribute.empty() || title_field(features, title_attribute)) return {};
-  return words_without_title(title_attribute);
-}
-
-std::string find_overview_problem(const PreparedParts& parts) {
-  if (parts.overview() != nullptr || parts.parts().size() == 1) return {};
-  return "there is no overview, so a tile of a low zoom reads every part; `trapeze prepare "
-         "--join` makes one";
 }
 
 }  // namespace trapeze

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/io/prepared/prepared_parts.h"
-#include "core/layer/feature_table.h"
 #include "server/config/config.h"
 
 namespace trapeze {
@@ -23,11 +21,5 @@ struct LayerProblem {
 /// known without reading its source, see examine_layer(). For a prepared layer this includes too
 /// many skipped features. Reports problems instead of throwing. Thread-safety: any thread.
 std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer);
-
-/// A message if the features lack the attribute that is to name them; empty if not, or if none is.
-std::string find_title_problem(const FeatureTable& features, const std::string& title_attribute);
-
-/// A message if several parts lack their overview; empty if not.
-std::string find_overview_problem(const PreparedParts& parts);
 
 }  // namespace trapeze

@@ -228,7 +228,8 @@ const std::array<TileName, 3> kTiles = {kTile, TileName{kTile.zoom - 1, kTile.x 
                                         TileName{kTile.zoom + 1, 2 * kTile.x + 1, 2 * kTile.y}};
 
 const std::vector<Exception> kExceptions = {
-    // Rings hardly larger than a wide line have less ink, and the oracle's rings are not simplified.
+    // Rings hardly larger than a wide line have less ink, and the oracle's rings are not
+    // simplified.
     {"Coincident", "outline of 3 px", {1, 0.0008}},
 };
 
