@@ -143,6 +143,7 @@ class Stroker::Pen {
         directions_(directions),
         band_{0, canvas.height()} {
     if (!stroke.is_dashed()) return;
+    shares_ = Ints{};
     for (std::size_t i = 0; i + 1 < stroke.dashes.size(); i += 2) {
       const Dash dash{period_, stroke.dashes[i] * scale};
       dashes_.push_back(dash);
@@ -362,7 +363,7 @@ class Stroker::Pen {
       if (!dashes_.empty()) values *= dash_shares(round, along, beyond);
       constexpr Floats kNone{};
       const Ints is_beside = (beyond.before <= kNone) & (beyond.behind <= kNone);
-      cover(values, is_beside, round.number, row, begin, out + begin);
+      cover(values, shares_ & is_beside, round.number, row, begin, out + begin);
     }
   }
 
@@ -422,9 +423,9 @@ class Stroker::Pen {
     return inked;
   }
 
-  // Adjacent pixels of a row, from a column on, and which of them are beside the line, not beyond
-  // its ends: only these are shared with other lines, as the next line of an outline covers the
-  // others.
+  // Adjacent pixels of a row, from a column on, and which of them may be shared with other lines:
+  // those beside the line, not beyond its ends, as the next line of an outline covers those. Dashes
+  // are not shared.
   void cover(Floats values, Ints is_beside, std::uint32_t number, int row, int column,
              std::uint8_t* out) {
     std::uint32_t* const known = shared_.known() + place_of(row, column);
@@ -475,7 +476,7 @@ class Stroker::Pen {
     shared_.add(
         place_of(row, column), number + 1,
         [&](std::uint32_t known) { return samples(known - 1, x, y); },
-        [&](std::uint32_t known) { return ink(lines_[known - 1], x, y); });
+        [&](std::uint32_t known) { return to_value(lines_[known - 1].ink); });
   }
 
   void note_direction(std::uint32_t number) {
@@ -496,12 +497,6 @@ class Stroker::Pen {
     return sampled.samples(half_planes_);
   }
 
-  std::uint8_t ink(const Line& line, double x, double y) const {
-    if (dashes_.empty()) return to_value(line.ink);
-    const double along = (x - line.from.x) * line.dx + (y - line.from.y) * line.dy;
-    return to_value(line.ink * dash_share(line, std::clamp(along, 0.0, line.length)));
-  }
-
   void draw_row(std::uint32_t number, int row, double y, double west, double east) {
     const Line& line = lines_[number];
     const Columns columns = columns_between(west, east, canvas_.width());
@@ -518,6 +513,7 @@ class Stroker::Pen {
       const std::uint8_t value = to_value(share);
       if (value == 0) continue;
       out[column] = std::max(out[column], value);
+      if (!dashes_.empty()) continue;
       std::uint32_t& known = shared_.known()[place_of(row, column)];
       if (known == 0) {
         known = number + 1;
@@ -559,6 +555,7 @@ class Stroker::Pen {
   SharedPixels& shared_;
   std::vector<std::uint8_t>& directions_;  // of lines, numbers of HalfPlanes
   const HalfPlanes& half_planes_ = HalfPlanes::table();
+  Ints shares_ = Ints{} - 1;  // all bits set if lines share pixels, none if they do not
   Rows band_;
   std::uint64_t values_ = 0;  // computed so far
 };

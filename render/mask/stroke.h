@@ -5,8 +5,9 @@
 // several edges are near, the greatest value counts, or, if that is more, the share of the pixel
 // that they cover together, by sample points, with the least of their inks (see shared_pixels.h).
 // So a line is not darker where edges meet, and lines closer together than they are wide cover what
-// they should. Outlines are always drawn on the CPU, and are the same with any renderer for the
-// fill. They do not depend on the order of the edges.
+// they should. Of dashed lines, and of crowds drawn by the nearest edge (see below), the greatest
+// value always counts. Outlines are always drawn on the CPU, and are the same with any renderer for
+// the fill. They do not depend on the order of the edges.
 //
 // The outline of a ring that is hardly larger than the line is wide would be a dot as wide as the
 // line, and thousands of such rings would make the map black. Its ink should therefore be set with

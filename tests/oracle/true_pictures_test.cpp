@@ -85,6 +85,7 @@ std::optional<Place> place_inside(const TrueFeature& feature) {
 const std::vector<Exception> kExceptions = {
     // As below, and smaller scales, zooms 4 and 6, where coasts are denser.
     {"europe_countries", "degrees, classes and outline", {1.7, 0.0012}},
+    {"europe_countries", "degrees, outline", {1, 0.001}},
     // Where thousands of polygons are hardly larger than lines are wide, lines that are off by a
     // quarter of a pixel lose up to half of their ink, and those of features that are narrower than
     // the tolerance are not there, or not hidden by features over them.
