@@ -89,8 +89,8 @@ void SharedPixels::finish() {
   is_clean_ = true;
 }
 
-// One point less than there are: its samples cover a little more or less than a line does, and a
-// pixel shows the greater of this and the greatest value of a line.
+// One point less than are covered, as the samples are off by about one, and where they are too
+// many, they would count: a pixel shows the greater of this and the greatest value of a line.
 std::uint8_t SharedPixels::value_of(const Shared& pixel) {
   const int points = std::popcount(pixel.samples);
   const int covered = points == kPoints ? kPoints : std::max(points - 1, 0);

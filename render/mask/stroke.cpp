@@ -143,7 +143,6 @@ class Stroker::Pen {
         directions_(directions),
         band_{0, canvas.height()} {
     if (!stroke.is_dashed()) return;
-    shares_ = Ints{};
     for (std::size_t i = 0; i + 1 < stroke.dashes.size(); i += 2) {
       const Dash dash{period_, stroke.dashes[i] * scale};
       dashes_.push_back(dash);
@@ -362,8 +361,9 @@ class Stroker::Pen {
       if (are_none(values)) continue;
       if (!dashes_.empty()) values *= dash_shares(round, along, beyond);
       constexpr Floats kNone{};
-      const Ints is_beside = (beyond.before <= kNone) & (beyond.behind <= kNone);
-      cover(values, shares_ & is_beside, round.number, row, begin, out + begin);
+      Ints may_share{};
+      if (dashes_.empty()) may_share = (beyond.before <= kNone) & (beyond.behind <= kNone);
+      cover(values, may_share, round.number, row, begin, out + begin);
     }
   }
 
@@ -426,46 +426,47 @@ class Stroker::Pen {
   // Adjacent pixels of a row, from a column on, and which of them may be shared with other lines:
   // those beside the line, not beyond its ends, as the next line of an outline covers those. Dashes
   // are not shared.
-  void cover(Floats values, Ints is_beside, std::uint32_t number, int row, int column,
+  void cover(Floats values, Ints may_share, std::uint32_t number, int row, int column,
              std::uint8_t* out) {
-    std::uint32_t* const known = shared_.known() + place_of(row, column);
-    Ints is_another{};
-    if (canvas_.width() >= kBlock) {
-      is_another = cover<kBlock>(values, is_beside, number, out, known);
-    } else if (canvas_.width() == 3) {
-      is_another = cover<3>(values, is_beside, number, out, known);
-    } else if (canvas_.width() == 2) {
-      is_another = cover<2>(values, is_beside, number, out, known);
-    } else {
-      is_another = cover<1>(values, is_beside, number, out, known);
+    const auto rounded = __builtin_convertvector(values + 0.5f, Ints);
+    const auto narrow = __builtin_convertvector(rounded, Shorts);
+    const auto bytes = __builtin_convertvector(narrow, Bytes);
+    if (canvas_.width() < kBlock) {
+      for (int i = 0; i < canvas_.width(); ++i) {
+        cover(bytes[i], may_share[i] != 0, number, row, column + i, out[i]);
+      }
+      return;
     }
+    Bytes before{};
+    std::memcpy(&before, out, sizeof before);
+    const Bytes greater = bytes > before ? bytes : before;
+    std::memcpy(out, &greater, sizeof greater);
+    const Ints is_covered = may_share & (rounded > 0);
+    if (are_none(is_covered)) return;
+    std::uint32_t* const known = shared_.known() + place_of(row, column);
+    Ints numbers{};
+    std::memcpy(&numbers, known, sizeof numbers);
+    const Ints is_first = is_covered & (numbers == 0);
+    numbers |= is_first & static_cast<std::int32_t>(number + 1);
+    std::memcpy(known, &numbers, sizeof numbers);
+    const Ints is_another = is_covered & ~is_first;
     if (are_none(is_another)) return;
     for (int i = 0; i < kBlock; ++i) {
       if (is_another[i] != 0) share(number, row, column + i, out[i]);
     }
   }
 
-  // The first pixels of a block. Returns which of them another line covers already.
-  template <std::size_t count>
-  static Ints cover(Floats values, Ints is_beside, std::uint32_t number, std::uint8_t* out,
-                    std::uint32_t* known) {
-    const auto rounded = __builtin_convertvector(values + 0.5f, Ints);
-    const auto narrow = __builtin_convertvector(rounded, Shorts);
-    const auto bytes = __builtin_convertvector(narrow, Bytes);
-    Bytes before{};
-    std::memcpy(&before, out, count);
-    const Bytes greater = bytes > before ? bytes : before;
-    std::memcpy(out, &greater, count);
-    const Ints is_covered = is_beside & (rounded > 0);
-    if (are_none(is_covered)) return is_covered;
-    Ints numbers{};
-    std::memcpy(&numbers, known, count * sizeof *known);
-    const Ints is_first = is_covered & (numbers == 0);
-    numbers |= is_first & static_cast<std::int32_t>(number + 1);
-    std::memcpy(known, &numbers, count * sizeof *known);
-    Ints within{};
-    for (std::size_t i = 0; i < count; ++i) within[i] = -1;
-    return is_covered & ~is_first & within;
+  // The same for one pixel.
+  void cover(std::uint8_t value, bool may_share, std::uint32_t number, int row, int column,
+             std::uint8_t& out) {
+    out = std::max(out, value);
+    if (value == 0 || !may_share) return;
+    std::uint32_t& known = shared_.known()[place_of(row, column)];
+    if (known == 0) {
+      known = number + 1;
+    } else {
+      share(number, row, column, out);
+    }
   }
 
   // A pixel that another line covers already.
@@ -510,16 +511,7 @@ class Stroker::Pen {
       const int i = column - columns.begin;
       float share = line.ink * across(std::abs(offset + static_cast<float>(i) * step));
       if (!dashes_.empty()) share *= dash_share(line, (x + i) * line.dx + y * line.dy);
-      const std::uint8_t value = to_value(share);
-      if (value == 0) continue;
-      out[column] = std::max(out[column], value);
-      if (!dashes_.empty()) continue;
-      std::uint32_t& known = shared_.known()[place_of(row, column)];
-      if (known == 0) {
-        known = number + 1;
-      } else {
-        this->share(number, row, column, out[column]);
-      }
+      cover(to_value(share), dashes_.empty(), number, row, column, out[column]);
     }
   }
 
@@ -555,7 +547,6 @@ class Stroker::Pen {
   SharedPixels& shared_;
   std::vector<std::uint8_t>& directions_;  // of lines, numbers of HalfPlanes
   const HalfPlanes& half_planes_ = HalfPlanes::table();
-  Ints shares_ = Ints{} - 1;  // all bits set if lines share pixels, none if they do not
   Rows band_;
   std::uint64_t values_ = 0;  // computed so far
 };

@@ -143,15 +143,21 @@ TEST(ChangedTiles, OfTheSameDataAreNone) {
   }
 }
 
+/// A layer of these features of a GeoJSON.
+std::shared_ptr<const Dataset> load_land(const std::string& features,
+                                         bool has_fast_topology = false) {
+  const TemporaryFolder folder;
+  auto layers = layers_of_files({folder.write(
+      "land.geojson", R"({"type":"FeatureCollection","features":[)" + features + "]}")});
+  layers[0].fast_topology = has_fast_topology;
+  return Dataset::load(layers);
+}
+
 TEST(ChangedTiles, WithOtherLabelsAreListed) {
   const auto land_with = [](const std::string& name) {
-    const TemporaryFolder folder;
-    const std::string file = folder.write(
-        "land.geojson",
-        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":")" +
-            name + R"("},"geometry":{"type":"Polygon","coordinates":)" +
-            R"([[[0.1,0.1],[80,0.1],[80,60],[0.1,60],[0.1,0.1]]]}}]})");
-    return Dataset::load(layers_of_files({file}));
+    return load_land(R"({"type":"Feature","properties":{"name":")" + name +
+                     R"("},"geometry":{"type":"Polygon","coordinates":)" +
+                     R"([[[0.1,0.1],[80,0.1],[80,60],[0.1,60],[0.1,0.1]]]}})");
   };
   const auto before = land_with("Aland");
   const auto after = land_with("Bland");
@@ -165,13 +171,10 @@ TEST(ChangedTiles, WithOtherLabelsAreListed) {
 
 TEST(ChangedTiles, OfLargerScalesAreCandidatesToo) {
   const auto land_with = [](const std::string& vertex) {
-    const TemporaryFolder folder;
-    const std::string file = folder.write(
-        "land.geojson",
-        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
-        R"({"type":"Polygon","coordinates":[[[0.2,0.2],[1,0.25],[0.95,0.8],[0.25,0.75],[)" +
-            vertex + R"(],[0.2,0.2]]]}}]})");
-    return Dataset::load(layers_of_files({file}));
+    return load_land(
+        R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":)"
+        R"([[[0.2,0.2],[1,0.25],[0.95,0.8],[0.25,0.75],[)" +
+        vertex + R"(],[0.2,0.2]]]}})");
   };
   const auto before = land_with("0.2249,0.47501");
   const auto after = land_with("0.2241,0.47508");
@@ -189,16 +192,12 @@ TEST(ChangedTiles, OfLargerScalesAreCandidatesToo) {
 
 TEST(ChangedTiles, WithoutTheTopologyTestAreListed) {
   const auto land_to = [](const std::string& east) {
-    const TemporaryFolder folder;
-    const std::string file = folder.write(
-        "land.geojson",
-        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
+    return load_land(
+        R"({"type":"Feature","properties":{},"geometry":)"
         R"({"type":"Polygon","coordinates":[[[1,1],[9,1],[9,9],[1,9],[1,1]]]}},{"type":"Feature",)"
         R"("properties":{},"geometry":{"type":"Polygon","coordinates":[[[5,5],[)" +
-            east + ",5],[" + east + ",15],[5,15],[5,5]]]}}]}");
-    auto layers = layers_of_files({file});
-    layers[0].fast_topology = true;
-    return Dataset::load(layers);
+            east + ",5],[" + east + ",15],[5,15],[5,5]]]}}",
+        true);
   };
   const auto before = land_to("15");  // the features overlap
   const auto after = land_to("17");
