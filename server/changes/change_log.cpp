@@ -109,14 +109,15 @@ std::set<std::string> ChangeLog::names_of(const Step& step) {
   return names;
 }
 
-/// Whether any tile of the layer may look different, without comparing tiles.
-bool ChangeLog::has_changed(const Step& step, const std::string& name) {
+/// Which tiles of the layer may look different, without comparing tiles.
+ChangeLog::Change ChangeLog::change_of(const Step& step, const std::string& name) {
   const auto before = step.before->find(name);
   const auto after = step.after->find(name);
-  if (!before || !after) return true;
+  if (!before || !after) return Change::of_all_tiles;
   const ServedLayer& old = step.before->layers()[*before];
   const ServedLayer& now = step.after->layers()[*after];
-  return old.revision != now.revision || is_shown_otherwise(old, *before, now, *after);
+  if (is_shown_otherwise(old, *before, now, *after)) return Change::of_all_tiles;
+  return old.revision == now.revision ? Change::none : Change::of_some_tiles;
 }
 
 ChangeLog::ChangeLog(Options options) : options_(std::move(options)) {
@@ -183,7 +184,7 @@ void ChangeLog::combine_waiting() {
   Step& step = **oldest;
   Step& next = **std::next(oldest);
   for (const std::string& name : names_of(step)) {
-    if (has_changed(step, name)) step.in_full.insert(name);
+    if (change_of(step, name) != Change::none) step.in_full.insert(name);
   }
   next.in_full.merge(step.in_full);
   if (step.memory == Memory::apart) next.memory = Memory::apart;
@@ -240,17 +241,14 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
   names.insert(step.in_full.begin(), step.in_full.end());
   std::vector<ChangedLayer> layers;
   for (const std::string& name : names) {
-    const auto before = step.before->find(name);
-    const auto after = step.after->find(name);
+    const Change change =
+        step.in_full.contains(name) ? Change::of_all_tiles : change_of(step, name);
+    if (change == Change::none) continue;
     ChangedLayer layer;
     layer.name = name;
     layer.tiles.zooms = options_.zooms;
-    if (step.in_full.contains(name) || !before || !after ||
-        is_shown_otherwise(step.before->layers()[*before], *before, step.after->layers()[*after],
-                           *after)) {
+    if (change == Change::of_all_tiles) {
       layer.is_everything = true;
-    } else if (step.before->layers()[*before].revision == step.after->layers()[*after].revision) {
-      continue;
     } else {
       ChangeRequest request;
       request.tile.layers = {name};

@@ -107,7 +107,8 @@ class ChangeLog {
   void take_changes(Step& step, std::vector<ChangedLayer> layers);
   void combine_waiting();
   static std::set<std::string> names_of(const Step& step);
-  static bool has_changed(const Step& step, const std::string& name);
+  enum class Change { none, of_some_tiles, of_all_tiles };
+  static Change change_of(const Step& step, const std::string& name);
   void tell_command();
   void run_command(const Sum& changes);
 

@@ -201,9 +201,9 @@ std::string attribution_of(std::string own, std::span<const std::string> layers,
                            const StyleQuery& style, const Dataset& dataset) {
   std::string text = std::move(own);
   for (const std::string& layer : layers) {
-    const ParameterValue* value = style.find(layer, ParameterId::values);
     const StyleQuery& usual = dataset.layers()[*dataset.find(layer)].config.style;
-    if (value == nullptr) value = usual.find(layer, ParameterId::values);
+    const StyleQuery shown = style.with_defaults(layer, usual);
+    const ParameterValue* value = shown.find(layer, ParameterId::values);
     const auto* choice = value == nullptr ? nullptr : std::get_if<TableChoice>(value);
     if (choice == nullptr) continue;
     for (const auto& [name, named] : dataset.tables()) {

@@ -138,10 +138,8 @@ Result<std::vector<std::string>> layers_of(const std::string& list, const Datase
 /// How far outside its bounds the layer may show something in a style, in pixels.
 double margin_of(const StyleQuery& style, const LayerConfig& config) {
   constexpr double kHalfOfWidestLine = 16;
-  const auto find = [&](ParameterId parameter) {
-    const ParameterValue* value = style.find(config.name, parameter);
-    return value != nullptr ? value : config.style.find(config.name, parameter);
-  };
+  const StyleQuery shown = style.with_defaults(config.name, config.style);
+  const auto find = [&](ParameterId parameter) { return shown.find(config.name, parameter); };
   const auto number = [&find](ParameterId parameter, double usual) {
     const ParameterValue* value = find(parameter);
     const double* found = value == nullptr ? nullptr : std::get_if<double>(value);

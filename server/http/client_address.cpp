@@ -18,12 +18,33 @@ bool is_trusted(const ClientAddress& address, std::span<const AddressRange> trus
       trusted, [&address](const AddressRange& range) { return range.contains(address); });
 }
 
-std::optional<int> parse_bits(std::string_view text, int most) {
-  int bits = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bits);
+std::optional<int> parse_number(std::string_view text, int most) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (bits < 0 || bits > most) return std::nullopt;
-  return bits;
+  if (number < 0 || number > most) return std::nullopt;
+  return number;
+}
+
+/// The address in an entry of X-Forwarded-For: some proxies append ports, "192.0.2.7:1234" and
+/// "[2001:db8::1]:1234". An IPv6 address without brackets has no port.
+std::optional<ClientAddress> parse_forwarded(std::string_view text) {
+  std::string_view address = text;
+  if (text.starts_with('[')) {
+    const std::size_t end = text.find(']');
+    if (end == std::string_view::npos) return std::nullopt;
+    address = text.substr(1, end - 1);
+    text.remove_prefix(end + 1);
+  } else {
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    if (text.find('.') < colon) address = text.substr(0, colon);
+    text.remove_prefix(address.size());
+  }
+  constexpr int kLastPort = 65535;
+  const bool has_port =
+      text.starts_with(':') && parse_number(text.substr(1), kLastPort).has_value();
+  if (!text.empty() && !has_port) return std::nullopt;
+  return parse_address(address);
 }
 
 }  // namespace
@@ -68,7 +89,7 @@ std::optional<AddressRange> parse_address_range(std::string_view text) {
   if (!first) return std::nullopt;
   if (slash == text.size()) return AddressRange{*first, 128};
   const bool is_ipv4 = first->is_ipv4() && text.find(':') == std::string_view::npos;
-  const auto bits = parse_bits(text.substr(slash + 1), is_ipv4 ? 32 : 128);
+  const auto bits = parse_number(text.substr(slash + 1), is_ipv4 ? 32 : 128);
   if (!bits) return std::nullopt;
   return AddressRange{*first, *bits + (is_ipv4 ? 96 : 0)};
 }
@@ -80,7 +101,7 @@ ClientAddress client_behind(const ClientAddress& peer, std::string_view forwarde
   while (!forwarded_for.empty() && is_trusted(client, trusted)) {
     const std::size_t comma = forwarded_for.rfind(',');
     const bool is_last = comma == std::string_view::npos;
-    const auto said = parse_address(trimmed(forwarded_for.substr(is_last ? 0 : comma + 1)));
+    const auto said = parse_forwarded(trimmed(forwarded_for.substr(is_last ? 0 : comma + 1)));
     if (!said) break;
     client = *said;
     forwarded_for = is_last ? std::string_view() : forwarded_for.substr(0, comma);

@@ -46,8 +46,9 @@ std::optional<AddressRange> parse_address_range(std::string_view text);
 
 /// The client behind trusted proxies: the last address of `forwarded_for` (the value of
 /// X-Forwarded-For) that is not trusted itself. Returns `peer`, the other end of the connection, if
-/// it is not trusted, or if the header contains something other than an address there. Entries that
-/// an untrusted client wrote into the header itself are never believed.
+/// it is not trusted, or if the header contains something other than an address there, with or
+/// without a port. Entries that an untrusted client wrote into the header itself are never
+/// believed.
 ClientAddress client_behind(const ClientAddress& peer, std::string_view forwarded_for,
                             std::span<const AddressRange> trusted);
 

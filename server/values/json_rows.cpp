@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "server/base/json_text.h"
+#include "server/base/trimmed.h"
 
 namespace trapeze {
 namespace {
@@ -162,7 +163,7 @@ class RowHandler {
 
   static std::string name_of(const std::string& given, const char* usual) {
     constexpr std::size_t kMaxNameBytes = 128;
-    return given.empty() ? std::string(usual) : given.substr(0, kMaxNameBytes);
+    return std::string(given.empty() ? usual : cut_to_bytes(given, kMaxNameBytes));
   }
 
   /// A table without a single value has most likely a mistyped column.

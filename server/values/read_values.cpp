@@ -104,7 +104,7 @@ Problem no_such_column(std::string_view parameter, const std::string& name,
   constexpr std::size_t kMostNamed = 20;
   std::vector<std::string> known;
   known.reserve(names.size());
-  for (const std::string& each : names) known.push_back(each.substr(0, kMaxNameBytes));
+  for (const std::string& each : names) known.emplace_back(cut_to_bytes(each, kMaxNameBytes));
   const auto named = std::min(known.size(), kMostNamed);
   const std::string list = fmt::format(
       "{}{}", fmt::join(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(named), ", "),
@@ -164,9 +164,9 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
                                     "value: add a header line such as \"key,value\".",
                                     value_name)};
   }
-  ValueTableBuilder builder(
-      {names[places->key].substr(0, kMaxNameBytes), names[places->value].substr(0, kMaxNameBytes)},
-      options.max_rows, delimiter == ';');
+  ValueTableBuilder builder({std::string(cut_to_bytes(names[places->key], kMaxNameBytes)),
+                             std::string(cut_to_bytes(names[places->value], kMaxNameBytes))},
+                            options.max_rows, delimiter == ';');
   builder.reserve(static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1, text.size());
   while (true) {
     const auto has_record = reader.next();

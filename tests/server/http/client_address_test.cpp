@@ -63,6 +63,23 @@ TEST(ClientAddressTest, OnlyTrustedProxiesAreBelieved) {
   EXPECT_EQ(behind("127.0.0.1", ",,,"), "127.0.0.1");
 }
 
+TEST(ClientAddressTest, ProxiesMayAppendPorts) {
+  const auto trusted = ranges({"127.0.0.1", "10.0.0.0/8", "2001:db8:1::/48"});
+  const auto behind = [&trusted](const char* forwarded_for) {
+    return address_text(client_behind(address("127.0.0.1"), forwarded_for, trusted));
+  };
+  EXPECT_EQ(behind("203.0.113.9:4711"), "203.0.113.9");
+  EXPECT_EQ(behind("203.0.113.9:4711, 10.0.0.7:80"), "203.0.113.9");
+  EXPECT_EQ(behind("[2001:db8:2::5]:4711, [2001:db8:1::1]"), "2001:db8:2::5");
+  EXPECT_EQ(behind("2001:db8:2::5"), "2001:db8:2::5");
+  EXPECT_EQ(behind("::ffff:203.0.113.9"), "203.0.113.9");
+  for (const char* text :
+       {"203.0.113.9:", "203.0.113.9:x", "203.0.113.9:65536", "203.0.113.9:-1", "203.0.113.9:80:80",
+        "[203.0.113.9", "[2001:db8:2::5]4711", "[]", ":80"}) {
+    EXPECT_EQ(behind(text), "127.0.0.1") << text;
+  }
+}
+
 TEST(ClientAddressTest, LimitsHoldForAWholeIpv6Network) {
   EXPECT_EQ(limited_address(address("2001:db8:1:2:3::4")),
             limited_address(address("2001:db8:1:2:ffff::")));

@@ -70,6 +70,17 @@ TEST(ReadValuesTest, FindsColumnsWithLongNames) {
   EXPECT_EQ(read(text, {{"A3", name + "2"}})->names().value.size(), 128u);
 }
 
+TEST(ReadValuesTest, CutsLongNamesBetweenCharacters) {
+  std::string name(127, 'x');
+  name += "\xe7\x9c\x81";
+  for (const std::string& text :
+       {"A3," + name + "\nFRA,1\n", R"([{"A3": "FRA", ")" + name + R"(": 1}])"}) {
+    const auto table = read(text, {{"A3", name}});
+    ASSERT_TRUE(table) << text;
+    EXPECT_EQ(table->names().value, std::string(127, 'x')) << text;
+  }
+}
+
 TEST(ReadValuesTest, TakesColumnsForNumbersOnlyIfAllAreNumbers) {
   EXPECT_EQ(read("k,v\na,1\nb,-2\nc,+3\n")->type(), FieldType::integer);
   EXPECT_EQ(read("k,v\na,1\nb,2.5e3\n")->type(), FieldType::real);
