@@ -29,11 +29,13 @@ export class DetailPanel {
     this.small_ = select(SMALL);
     this.comparisons_ = COMPARISONS.map(([value]) => Object.assign(input("checkbox"), { value }));
     this.debug_ = DEBUG.map(([word]) => Object.assign(input("checkbox"), { value: word }));
+    this.is_small_chosen_ = false;
     this.pixels_ = 0;
     this.usual_ = new Map();
 
     this.simplify_.addEventListener("input", () => this.tell_(STEPS[this.simplify_.value]));
     this.simplify_.addEventListener("change", () => (this.pixels_ = STEPS[this.simplify_.value]));
+    this.small_.addEventListener("change", () => (this.is_small_chosen_ = true));
     for (const box of this.comparisons_) {
       box.addEventListener("change", () => this.compare_with_(box.checked ? box.value : null));
     }
@@ -62,7 +64,10 @@ export class DetailPanel {
       ["small", this.small_.value],
       ["debug", debug.join(",")],
     ]);
-    const shared = new Map([...chosen].filter(([name, value]) => value !== this.usual_.get(name)));
+    // Where features grow, "keep" is not the default of all layers.
+    const counts = (name, value) => value !== this.usual_.get(name) ||
+      (name === "small" && value === "keep" && this.is_small_chosen_);
+    const shared = new Map([...chosen].filter(([name, value]) => counts(name, value)));
     return { shared, against: this.comparisons_.find(({ checked }) => checked)?.value ?? null };
   }
 
@@ -76,9 +81,16 @@ export class DetailPanel {
     this.tell_(this.pixels_);
     this.strict_.checked = shown.get("topology") === "strict";
     choose(this.small_, shown.get("small"));
+    this.is_small_chosen_ = shared.has("small");
     this.compare_with_(against);
     const debug = shown.get("debug").split(",");
     for (const box of this.debug_) box.checked = debug.includes(box.value);
+  }
+
+  /** The default of `small` may have changed with the styles of the layers. */
+  show_usual_small(value) {
+    this.usual_.set("small", value);
+    if (!this.is_small_chosen_) choose(this.small_, value);
   }
 
   compare_with_(against) {

@@ -2,7 +2,7 @@
 // the map.
 
 import { FeaturePanel, ask_features } from "./feature_panel.js";
-import { path_of_layers, query_part, taken_by } from "./tile_query.js";
+import { path_of_layers, query_part, taken_by, takes } from "./tile_query.js";
 import { pixels_across, wrapped_longitude } from "./view_bounds.js";
 
 const DOUBLE_CLICK_MS = 250;
@@ -73,6 +73,7 @@ export class FeatureChoice {
     const { layer: name, id } = this.chosen_ ?? {};
     const layer = catalog.find((one) => one.name === name);
     if (!layer || !layers.some((one) => one.name === name)) return [];
+    if (!takes(layer, "ids") || !takes(layer, "highlight")) return [];
     const shape = new Map(taken_by(layer, shapes).filter(([key]) => OF_SHAPES.includes(key)));
     const pixels = this.pixels_across_();
     shape.set("small", "keep");
@@ -86,7 +87,7 @@ export class FeatureChoice {
     return [{
       layers: [name],
       path: path_of_layers([layer]),
-      query: query_part([["ids", id], ["highlight", id], ...OUTLINE, ...shape]),
+      query: query_part(taken_by(layer, [["ids", id], ["highlight", id], ...OUTLINE, ...shape])),
       min_zoom: 0, max_zoom: Infinity, parts: [],
     }];
   }

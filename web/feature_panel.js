@@ -84,7 +84,11 @@ export class FeaturePanel {
       const choose = button(this.name_of_(feature),
         { "aria-pressed": String(feature === chosen) });
       if (feature.title) choose.append(element("span", "of", this.act_.title_of(feature.layer)));
-      choose.addEventListener("click", () => this.act_.choose(feature));
+      choose.addEventListener("click", () => {
+        this.act_.choose(feature);
+        // The list is a new one.
+        this.node_.querySelector('.found [aria-pressed="true"]')?.focus();
+      });
       return element("li", "", choose);
     });
     return element("ul", "found", ...items);

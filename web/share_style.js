@@ -1,7 +1,7 @@
 // The current style in a short form for addresses: its name, or the id under which the server stores it.
 
 import { over } from "./named_styles.js";
-import { divide_shared } from "./tile_query.js";
+import { divide_shared, over_named } from "./tile_query.js";
 
 // The selection is not part of an exported map.
 const SELECTION = ["highlight", "highlight-fill", "highlight-stroke"];
@@ -19,7 +19,11 @@ export function shared_style(drawn, { layers, shared, named }) {
   const parts = divide_shared(plain, layers, shared);
   const rest = without(new Map(parts.shared), ["style"]);
   const is_changed = rest.size > 0 || parts.styled.some(({ style }) => new Map(style).size > 0);
-  return { name, document: is_changed ? document_of(parts.styled, rest, named) : null, ...parts };
+  return {
+    name,
+    document: is_changed ? document_of(parts.styled, rest, named) : null,
+    ...divide_shared(over_named(plain, shared, named), layers, shared),
+  };
 }
 
 /** `named` with the edits applied. */

@@ -53,9 +53,13 @@ export function switched_colour_control(parameter, label, first, on_change) {
   return control;
 }
 
-/** `range`: {min, max, step, builtin: a function that returns the number, format: number to text}. */
+/**
+ * `range`: {min, max, step, builtin: a function that returns the number, format: number to text,
+ * is_relative: whether the default depends on parameters of other controls, so that every chosen number
+ * counts}.
+ */
 export function number_control(parameter, label, range, on_change) {
-  const { min, max, step, builtin, format } = range;
+  const { min, max, step, builtin, format, is_relative = false } = range;
   // Without it, the accessible name would be that of the label, which contains the number, too.
   const slider = input("range", { min, max, step, "aria-label": label });
   const told = document.createElement("output");
@@ -67,12 +71,12 @@ export function number_control(parameter, label, range, on_change) {
   const control = {
     parameter,
     node: element("label", "row slider", element("span", "", label), slider, told),
-    builtin: () => String(builtin()),
+    builtin: () => (is_relative ? "" : String(builtin())),
     read: () => value ?? control.builtin(),
     show: (shown) => {
       value = shown;
-      slider.value = control.read();
-      tell(control.read());
+      slider.value = value ?? builtin();
+      tell(value ?? builtin());
     },
     refresh: () => control.show(value),
     mark_wrong: (is_wrong) => mark_wrong(slider, is_wrong),

@@ -21,13 +21,14 @@ const degrees = (number) => `${number}°`;
 
 export class StyleForm {
   /**
-   * @param layer of the catalog: {name, title, fields}
+   * @param layer of the catalog: {name, title, fields, locked}
    * @param builtin_fill the colour if the layer has none either
    * @param suggest returns the values of a property, see ClassEditor
    * @param on_change called without arguments when the user has changed something
    */
   constructor(layer, builtin_fill, suggest, on_change) {
     this.on_change_ = on_change;
+    this.locked_ = Array.isArray(layer.locked) ? layer.locked : [];
     this.usual_ = new Map();
     this.kept_ = new Map();
     this.fill = colour_control("fill", `Colour of ${layer.title}`, builtin_fill,
@@ -127,6 +128,11 @@ export class StyleForm {
     });
     this.label_ = choice_control("label", "Names",
       [["none", "none"], ...fields.map(({ name }) => [name, name])], change);
+    this.filter_ = text_control("filter", "Filter", example_filter(fields[0]), () => {
+      // No filter at all cannot be requested: without one, the default style's filter applies.
+      if (this.filter_.read() === "") this.filter_.show(this.usual_.get("filter") ?? null);
+      change();
+    });
     this.groups_ = [
       {
         name: "Fill",
@@ -168,7 +174,8 @@ export class StyleForm {
         name: "Shape",
         controls: [
           ...(layer.merge > 0
-            ? [number_control("merge", "Merge", range(1, 32, 1, layer.merge, pixels), change)] : []),
+            ? [number_control("merge", "Merge",
+              { ...range(1, 32, 1, layer.merge, pixels), is_relative: true }, change)] : []),
           number_control("grow", "Grow", range(0, 8, 0.5, 0, pixels), change),
           number_control("smooth", "Smooth", range(0, 32, 1, 0, pixels), change),
         ],
@@ -189,7 +196,7 @@ export class StyleForm {
       },
       {
         name: "Features",
-        controls: [text_control("filter", "Filter", example_filter(fields[0]), change)],
+        controls: [this.filter_],
       },
     ];
   }
@@ -207,8 +214,19 @@ export class StyleForm {
       this.on_change_();
     });
     this.class_group_ = fieldset("Classes", this.classes_.node, this.numbers_.node);
+    this.disable_locked_();
     const [fill, ...others] = this.groups_.map(({ node }) => node);
     return element("div", "style-form", fill, this.class_group_, ...others, reset);
+  }
+
+  /** Requests with these parameters would be refused. */
+  disable_locked_() {
+    const is_locked = (parameter) => this.locked_.includes(parameter);
+    for (const { gate, controls } of this.groups_) {
+      if (gate && (is_locked(gate.control.parameter) || is_locked(gate.off[0]))) disable(gate.control);
+      controls.filter(({ parameter }) => is_locked(parameter)).forEach(disable);
+    }
+    this.class_group_.disabled = CLASS_PARAMETERS.some(is_locked);
   }
 
   /** Pairs of parameter and value; empty if the classes are the default ones. */
@@ -248,6 +266,10 @@ export class StyleForm {
     this.show_gates_();
     this.on_change_();
   }
+}
+
+function disable({ node }) {
+  for (const control of node.querySelectorAll("input, select")) control.disabled = true;
 }
 
 function range(min, max, step, builtin, format) {

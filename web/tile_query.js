@@ -13,24 +13,44 @@ export function has_fast_topology({ topologies }) {
   return Array.isArray(topologies) && topologies.includes("fast");
 }
 
-/** Those of the shared parameters that apply to a layer of /catalog. */
-export function taken_by(layer, shared) {
-  return [...shared].filter(([name]) => name !== "topology" || has_fast_topology(layer));
+/** Whether requests can set a parameter for a layer of /catalog. */
+export function takes(layer, name) {
+  if (Array.isArray(layer.locked) && layer.locked.includes(name)) return false;
+  return name !== "topology" || has_fast_topology(layer);
+}
+
+/** Those of the parameters that apply to a layer of /catalog. */
+export function taken_by(layer, parameters) {
+  return [...parameters].filter(([name]) => takes(layer, name));
 }
 
 /**
- * The same for an image of several layers: if not all of them are served with topology=fast, the
- * parameter is set individually for those that are. `layers` are {name, style}; `catalog` has all layers.
+ * The same for an image of several layers: parameters that not all of them take are set individually for
+ * those that do. `layers` are {name, style}; `catalog` has all layers.
  */
 export function divide_shared(layers, catalog, shared) {
-  const takes = ({ name }) => has_fast_topology(catalog.find((layer) => layer.name === name));
-  if (!shared.has("topology") || layers.every(takes)) return { styled: layers, shared };
-  const topology = ["topology", shared.get("topology")];
+  const known = layers.map(({ name }) => catalog.find((layer) => layer.name === name));
+  const divided = [...shared].filter(([name]) => !known.every((layer) => takes(layer, name)));
+  if (divided.length === 0) return { styled: layers, shared };
   return {
-    styled: layers.map((layer) =>
-      takes(layer) ? { ...layer, style: [...layer.style, topology] } : layer),
-    shared: [...shared].filter(([name]) => name !== "topology"),
+    styled: layers.map((layer, i) => {
+      const own = taken_by(known[i], divided).filter(([name]) => !new Map(layer.style).has(name));
+      return own.length ? { ...layer, style: [...layer.style, ...own] } : layer;
+    }),
+    shared: [...shared].filter(([name]) => !new Map(divided).has(name)),
   };
+}
+
+/**
+ * Sets the shared parameters individually for those `layers` for which the named style sets them, because
+ * unprefixed ones do not override these.
+ */
+export function over_named(layers, shared, { layers: of_layers } = {}) {
+  return layers.map((layer) => {
+    const own = [...shared].filter(([name]) => SHARED_PARAMETERS.includes(name) &&
+      Object.hasOwn(of_layers?.[layer.name] ?? {}, name) && !new Map(layer.style).has(name));
+    return own.length ? { ...layer, style: new Map([...layer.style, ...own]) } : layer;
+  });
 }
 
 /** Includes the '?' unless there are no parameters. */
@@ -48,7 +68,8 @@ export function parameters_of_layers(layers, shared) {
   const is_plain = layers.length === 1 && !new Map(shared).has("style");
   const own = layers.flatMap(({ name, style }) =>
     [...style].map(([key, value]) => [is_plain ? key : `${name}.${key}`, value]));
-  return [...own, ...shared];
+  // Without a prefix, the layer's own value would be given twice.
+  return [...own, ...[...shared].filter(([key]) => !is_plain || !new Map(layers[0].style).has(key))];
 }
 
 export function path_of_layers(layers) {

@@ -1,7 +1,7 @@
 // The tile requests for the layers that are on: one for all of them, or as few as the server accepts.
 
 import {
-  divide_shared, parameters_of_layers, path_of_layers, query_part, taken_by,
+  divide_shared, over_named, parameters_of_layers, path_of_layers, query_part, taken_by,
 } from "./tile_query.js";
 
 export const MOST_LAYERS = 16; // in one tile
@@ -10,8 +10,9 @@ export const LONGEST_PLACE = "/22/4194303/4194303@2x.png".length;
 
 /**
  * @param drawn {name, style}, the lowest first
- * @param settings {layers: of the catalog; shared: parameters of all layers; has_background: whether
- *   the named style among them fills the tile; folder: path of the server's tiles}
+ * @param settings {layers: of the catalog; shared: parameters of all layers; named: document of the
+ *   named style among them, if known; has_background: whether it fills the tile; folder: path of the
+ *   server's tiles}
  * @returns requests, the lowest first: {layers: names, path, query, min_zoom, max_zoom, parts}, where
  *   `parts` are requests for the same layers one by one
  */
@@ -22,7 +23,7 @@ export function tile_requests(drawn, settings) {
     if (group.length) requests.push(with_parts(group, settings, requests.length === 0));
     group = [];
   };
-  for (const layer of drawn) {
+  for (const layer of over_named(drawn, settings.shared, settings.named)) {
     if (group.length && !fits([...group, layer], settings)) close();
     group.push(layer);
   }

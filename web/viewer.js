@@ -9,7 +9,7 @@ import { Comparison } from "./comparison.js";
 import { Connection } from "./connection.js";
 import { demonstrations } from "./demonstrations.js";
 import { DetailPanel, simplify_in_words } from "./detail_panel.js";
-import { choose } from "./elements.js";
+import { choose, element } from "./elements.js";
 import { FeatureChoice } from "./feature_choice.js";
 import { LayerList } from "./layer_list.js";
 import { layer_row } from "./layer_panel.js";
@@ -22,7 +22,7 @@ import { load_style, load_style_names, over, usual_shared, usual_style } from ".
 import { Notices } from "./notices.js";
 import { format_hash, parse_hash } from "./place_hash.js";
 import { ProgressLine } from "./progress_line.js";
-import { has_fast_topology } from "./tile_query.js";
+import { has_fast_topology, taken_by } from "./tile_query.js";
 import { tile_requests } from "./tile_requests.js";
 import { watch_tiles } from "./tile_timing.js";
 import { TryPanel } from "./try_panel.js";
@@ -358,11 +358,19 @@ class Viewer {
       this.rows_[i].show(state);
     });
     const against = this.compare_ === null ? null : this.against_;
-    this.detail_.show({ shared: this.shared_, against }, usual_shared(this.named_));
+    this.detail_.show({ shared: this.shared_, against }, this.usual_shared_());
     choose($("style"), this.shared_.get("style") ?? "");
     $("style-row").hidden = $("style").options.length < 2;
     // Visible until tiles load, and on some screens in hairlines between them.
     $("map").style.background = css_of(String(this.named_.background ?? "").replace(/^#/, ""));
+  }
+
+  /** The parameters of all layers if the address sets none. */
+  usual_shared_() {
+    const grows = (i) => Number(this.style_shown_(i).get("grow") ?? 0) > 0;
+    // The server's default; if only some of the layers grow, that of these.
+    const small = this.layers_on_().some(grows) ? "keep" : "dust";
+    return new Map([["small", small], ...usual_shared(this.named_)]);
   }
 
   show_style_names_(names) {
@@ -478,7 +486,9 @@ class Viewer {
   }
 
   looks_() {
-    return all_looks(this.style_names_, this.layers_.length, (i) => usual_style(this.layers_[i], {}));
+    const looks = all_looks(this.style_names_, this.layers_.length, (i) => usual_style(this.layers_[i], {}));
+    return looks.map(({ styles, ...look }) =>
+      ({ ...look, styles: styles.map((style, i) => new Map(taken_by(this.layers_[i], style))) }));
   }
 
   /** The address of the tile in the middle of the map. */
@@ -543,6 +553,7 @@ class Viewer {
       this.compared_tiles_.show(this.compare_ === null ? [] : this.tile_requests_(compared));
       this.show_attribution_(this.attributions_of_(this.layers_.map((_, i) => i)));
     }
+    this.detail_.show_usual_small(this.usual_shared_().get("small"));
     this.show_outline_();
     this.tell_refused_();
     this.tell_end_of_detail_();
@@ -585,6 +596,7 @@ class Viewer {
     return {
       layers: this.layers_,
       shared: this.in_language_(shared),
+      named: this.named_,
       has_background: Boolean(this.named_.background),
       folder: new URL(TILES).pathname,
     };
@@ -599,7 +611,12 @@ class Viewer {
       const layer = { ...this.layers_[i], title: values_title ? `${title}: ${values_title}` : title };
       return [legend_section(layer, entries, over(usual, drawn))];
     });
-    $("legend-body").replaceChildren(...sections.reverse());
+    // Replaced only if it changes, so that unfolded names stay unfolded while the map moves.
+    const body = element("div", "", ...sections.reverse());
+    if (body.innerHTML !== this.legend_markup_) {
+      this.legend_markup_ = body.innerHTML;
+      $("legend-body").replaceChildren(...body.childNodes);
+    }
     $("legend").hidden = sections.length === 0;
   }
 

@@ -75,8 +75,10 @@ class PriorityStack {
   Removal last_removal() const { return last_removal_; }
   /// In a coverage: the areas that went to another face in the last removal of a loop or a region.
   std::span<const Taken> last_taken() const { return borders_.taken(); }
-  /// Area of the block that the region removed last became a part of, if any (cells squared).
-  std::optional<double> last_block_area() const { return borders_.block_area(); }
+  /// Size of the loop around the block that the region removed last became a part of, if any, and
+  /// the edges of the block if those besides the ones whose face has changed do not know it.
+  std::optional<LoopSize> last_block_size() const { return borders_.block_size(); }
+  std::span<const EdgeId> last_block_edges() const { return borders_.block_edges(); }
   double weight(CornerId c) const { return weights_[c]; }
 
  private:

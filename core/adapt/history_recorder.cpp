@@ -185,6 +185,12 @@ void HistoryRecorder::touch(NodeId n, Touched& touched) {
   touched.nodes.push_back(n);
 }
 
+void HistoryRecorder::touch(EdgeId e, Touched& touched) {
+  if (edge_is_touched_[e] != 0) return;
+  edge_is_touched_[e] = 1;
+  touched.edges.push_back(e);
+}
+
 void HistoryRecorder::remove_batch(BatchRemoval& batch, Level level) {
   const auto note = [this](std::size_t lane, const EditLog& log) {
     note_touched(log, touched_by_lane_[lane]);
@@ -199,26 +205,29 @@ void HistoryRecorder::remove_batch(BatchRemoval& batch, Level level) {
 
 void HistoryRecorder::note_touched(const EditLog& log, Touched& touched) {
   for (const auto& kept : log.touched_nodes()) touch(kept.id, touched);
-  for (const auto& kept : log.touched_edges()) {
-    if (edge_is_touched_[kept.id] != 0) continue;
-    edge_is_touched_[kept.id] = 1;
-    touched.edges.push_back(kept.id);
-  }
+  for (const auto& kept : log.touched_edges()) touch(kept.id, touched);
+}
+
+/// The edge is now part of a larger outline.
+void HistoryRecorder::enlarge_loop(EdgeId e, LoopSize size) {
+  loop_sizes_[e] = std::max(loop_sizes_[e], size);
+  edge_version_[e] = kNoVersion;
 }
 
 /// The nodes along edges whose face changed now belong to another feature.
 void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& log) {
+  for (const EdgeId e : stack_.last_block_edges()) {
+    if (loop_sizes_[e] >= *stack_.last_block_size()) continue;
+    enlarge_loop(e, *stack_.last_block_size());
+    touch(e, touched_);
+  }
   for (const auto& kept : log.touched_edges()) {
     const Edge& edge = graph.edge(kept.id);
     if (!edge.is_alive() || (edge.face[kLeft] == kept.record.face[kLeft] &&
                              edge.face[kRight] == kept.record.face[kRight])) {
       continue;
     }
-    if (const std::optional<double> area = stack_.last_block_area()) {
-      // The edge is now part of a larger outline.
-      loop_sizes_[kept.id] = std::max(loop_sizes_[kept.id], loop_size_of(*area));
-      edge_version_[kept.id] = kNoVersion;
-    }
+    if (const std::optional<LoopSize> size = stack_.last_block_size()) enlarge_loop(kept.id, *size);
     for (const Side s : {kLeft, kRight}) {
       for (NodeId n = edge.extreme[s][kUp]; !n.is_none();
            n = graph.node(n).link[opposite(s)][kDown])

@@ -77,7 +77,9 @@ class HistoryRecorder {
                           Level level);
   bool is_copy(std::uint32_t version, std::uint32_t of) const;
   void open_edge(const TrapezoidalGraph& graph, EdgeId e);
+  void enlarge_loop(EdgeId e, LoopSize size);
   void touch(NodeId n, Touched& touched);
+  void touch(EdgeId e, Touched& touched);
 
   History* history_ = nullptr;
   const FaceFeatures* rows_ = nullptr;

@@ -1,9 +1,10 @@
 #include "core/borders/coverage_faults.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
-#include "core/borders/border_lengths.h"
 #include "core/borders/regions.h"
 #include "core/borders/set_map.h"
 #include "core/grid/web_mercator.h"
@@ -15,9 +16,44 @@ namespace {
 /// The surroundings of a region.
 struct Surroundings {
   std::vector<Segment> segments;
-  double border = 0;  // cells
+  double x = 0;       // of the meridian from which the area is counted
+  double area = 0;    // square metres on the ground
+  double border = 0;  // metres on the ground
   std::vector<std::uint32_t> beyond;
 };
+
+/// Of an edge: the area between it and a meridian, negative to the west of it, and its length.
+struct OnGround {
+  double area = 0;    // square metres
+  double length = 0;  // metres
+};
+
+OnGround on_ground(const Segment& edge, double meridian) {
+  // The scale of the map changes with latitude: Gauss-Legendre on pieces that are short enough for
+  // the precision of a double.
+  struct Node {
+    double at;
+    double weight;
+  };
+  constexpr std::array<Node, 3> kNodes = {
+      {{0.11270166537925831, 5.0 / 18}, {0.5, 8.0 / 18}, {0.88729833462074169, 5.0 / 18}}};
+  constexpr double kPiece = 1 << 22;  // cells: 80 kilometres at the equator
+  const auto [from, to] = edge;
+  const double dx = static_cast<double>(to.x) - from.x;
+  const double dy = static_cast<double>(to.y) - from.y;
+  const double length = std::hypot(dx, dy);
+  const double pieces = 1 + std::floor(std::abs(dy) / kPiece);
+  OnGround sum;
+  for (double piece = 0; piece < pieces; ++piece) {
+    for (const auto [at, weight] : kNodes) {
+      const double along = (piece + at) / pieces;
+      const double metre = cells_from_ground(1, from.y + along * dy);
+      sum.area += weight / pieces * (from.x + along * dx - meridian) * dy / (metre * metre);
+      sum.length += weight / pieces * length / metre;
+    }
+  }
+  return sum;
+}
 
 class FaultSearch {
  public:
@@ -55,8 +91,13 @@ class FaultSearch {
   void add_edge(EdgeId e, RegionId region, Side beyond) {
     if (region == regions_.unbounded || set_of(region).size() == 1) return;
     Surroundings& place = places_[region.value];
+    const Edge& edge = g_.edge(e);
+    const Segment segment{g_.point(edge.end[kUp]), g_.point(edge.end[kDown])};
+    if (place.segments.empty()) place.x = segment.first.x;
+    const OnGround strip = on_ground(segment, place.x);
+    place.area += beyond == kRight ? strip.area : -strip.area;
+    place.border += strip.length;
     place.segments.push_back(map_.borders().segments[e.value]);
-    place.border += length_of(g_, g_.edge(e));
     if (!set_of(region).empty()) return;
     const auto& other = map_.sets()[g_.edge(e).face[beyond]];
     place.beyond.insert(place.beyond.end(), other.begin(), other.end());
@@ -65,11 +106,10 @@ class FaultSearch {
   CoverageFault fault_at(RegionId region, FaultKind kind,
                          const std::vector<std::uint32_t>& features) {
     const Surroundings& place = places_[region.value];
-    const double metre = cells_from_ground(1, place.segments.front().first.y);
     CoverageFault fault;
     fault.kind = kind;
-    fault.area = regions_.area[region] / (metre * metre);
-    fault.width = regions_.area[region] / (place.border / 2) / metre;
+    fault.area = place.area;
+    fault.width = place.area / (place.border / 2);
     fault.features = features;
     boundary_.assign(place.segments);
     trapezoidation_.build(boundary_, alone_);  // a part of a noded map is noded

@@ -23,7 +23,7 @@ inline constexpr NameTable<FaultKind, 2> kFaultNames({
 /// A connected gap or overlap.
 struct CoverageFault {
   FaultKind kind = FaultKind::gap;
-  double area = 0;   // square metres on the ground, at the latitude of the place
+  double area = 0;   // square metres on the ground
   double width = 0;  // metres on the ground: the area over half of the boundary, as for a strip
   /// For an overlap, the features that cover the place; for a gap, the features around it (two at
   /// least). By position, in ascending order.

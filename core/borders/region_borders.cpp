@@ -70,6 +70,8 @@ void RegionBorders::assign(const TrapezoidalGraph& graph, const MergePlan* plan)
   }
   stamp_ = 0;
   may_have_junction_.assign(moments_.size(), 0);
+  known_sizes_.clear();
+  for (const AreaMoments& moments : moments_) known_sizes_.push_back(loop_size_of(moments.area));
   first_end_.assign(graph.vertices().size() + 1, 0);
   for (std::size_t i = 0; i < graph.corners().size(); ++i) {
     const Corner& corner = graph.corner(CornerId(i));
@@ -346,7 +348,8 @@ RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   taken_.clear();
   changed_.clear();
   dissolved_.clear();
-  block_area_.reset();
+  block_size_.reset();
+  block_edges_.clear();
   log.begin();
   United united = {region};
   if (is_piece && bridges(mates.size())) {
@@ -364,8 +367,17 @@ RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
     dissolve(region, later != kOutside ? later : taker, log, united);
     return united;
   }
-  block_area_ = moments_[united.front()].area;
+  note_block(united.front());
   return united;
+}
+
+/// Sizes have steps, so a block that grows is walked around only now and then.
+void RegionBorders::note_block(RegionId block) {
+  block_size_ = loop_size_of(moments_[block].area);
+  if (known_sizes_[block] >= *block_size_) return;
+  known_sizes_[block] = *block_size_;
+  collect_arcs(block);
+  block_edges_ = edges_;
 }
 
 /// Unites two adjacent regions, giving both the face of the larger one.
@@ -409,7 +421,12 @@ void RegionBorders::dissolve(RegionId region, FaceId taker, EditLog& log, United
   }
   std::sort(takers.begin(), takers.end());
   takers.erase(std::unique(takers.begin(), takers.end()), takers.end());
-  for (const RegionId other : takers) unite(region, other);
+  // Edges of this region, whose face has changed, are told the size of a block.
+  if (!takers.empty()) known_sizes_[region] = kLoopSizes - 1;
+  for (const RegionId other : takers) {
+    known_sizes_[region] = std::min(known_sizes_[region], known_sizes_[other]);
+    unite(region, other);
+  }
   faces_[region] = taker;
   std::sort(junctions.begin(), junctions.end());
   junctions.erase(std::unique(junctions.begin(), junctions.end()), junctions.end());

@@ -35,6 +35,7 @@
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/area_moments.h"
 #include "core/grid/grid.h"
+#include "core/mesh/outline.h"
 
 namespace trapeze {
 
@@ -92,8 +93,11 @@ class RegionBorders {
   // Effects of the last removal.
   /// Areas transferred from one face to another.
   std::span<const Taken> taken() const { return taken_; }
-  /// Area of the resulting block, in cells squared; none if no block resulted.
-  std::optional<double> block_area() const { return block_area_; }
+  /// Size of the loop around the resulting block; none if no block resulted.
+  std::optional<LoopSize> block_size() const { return block_size_; }
+  /// All edges of the resulting block, if it has grown; if empty, the edges whose face has not
+  /// changed know its size already.
+  std::span<const EdgeId> block_edges() const { return block_edges_; }
   /// Vertices that lost an edge.
   std::span<const VertexId> changed() const { return changed_; }
   /// Junctions that have become corners in the middle of an arc.
@@ -152,6 +156,7 @@ class RegionBorders {
   void dissolve(RegionId region, FaceId taker, EditLog& log, United& united);
   Side side_of(EdgeId edge, RegionId region);
   void measure_regions(const Regions& regions);
+  void note_block(RegionId block);
   void note_taken(RegionId region, FaceId face, FaceId taker);
   void note_pieces(RegionId region, FaceId face, FaceId taker);
   void fetch_ends(std::span<const VertexId> junctions) const;
@@ -169,6 +174,7 @@ class RegionBorders {
   Table<RegionId, AreaMoments> moments_;  // of the original regions
   Table<RegionId, List> lists_;
   Table<RegionId, std::uint8_t> may_have_junction_;
+  Table<RegionId, LoopSize> known_sizes_;  // of the loop, as known to all edges of the region
   std::vector<Seed> seeds_;
   RegionId unbounded_;
   std::vector<CornerId> ends_;                // of arcs, in order of their vertices
@@ -184,7 +190,8 @@ class RegionBorders {
   std::vector<VertexId> junctions_;
   std::vector<CornerId> gone_corners_;
   std::vector<Taken> taken_;
-  std::optional<double> block_area_;
+  std::optional<LoopSize> block_size_;
+  std::vector<EdgeId> block_edges_;
   std::vector<VertexId> changed_;
   std::vector<CornerId> dissolved_;
 };

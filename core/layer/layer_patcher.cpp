@@ -273,7 +273,7 @@ class Patching {
     for (const std::int64_t id : patch.ids) {
       const auto row = row_of_id.find(id);
       if (row == row_of_id.end()) continue;
-      if (is_replaced_[row->second]++ == 0) replaced_.push_back(row->second);
+      if (std::exchange(is_replaced_[row->second], 1) == 0) replaced_.push_back(row->second);
     }
   }
 

@@ -37,7 +37,9 @@ void limit_tiles(std::size_t most_tiles, ChangedLayer& layer) {
     if (tiles <= most_tiles) continue;
     layer.is_everything = layer.is_everything || zoom == layer.tiles.zooms.first;
     layer.tiles.is_complete = false;
-    if (!layer.is_everything) layer.tiles.zooms.last = zoom - 1;
+    if (!layer.is_everything) {
+      layer.tiles.zooms.last = std::min(layer.tiles.zooms.last, zoom - 1);
+    }
     return;
   }
 }

@@ -1,7 +1,9 @@
 // The command line: parses it, runs the command, reports errors.
+#include <fcntl.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -740,6 +742,17 @@ int run(int argc, char** argv) {
   return trapeze::run_render(render);
 }
 
+/// Opens standard streams that are closed, so that no file that the program writes gets their
+/// descriptors: its own log would be written into it. Writing results still fails.
+void open_standard_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) >= 0) continue;
+    // The lowest free descriptor, which is this one.
+    [[maybe_unused]] const int opened =
+        open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
 /// The status of the command, or of a failure if not all of its results could be written, for
 /// example to a full disk.
 int status_with_results(int status) {
@@ -752,6 +765,7 @@ int status_with_results(int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   // At a limit on the size of files (`ulimit -f`), writing fails as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   try {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/grid/web_mercator.h"
+#include "core/layer/layer_contents.h"
 #include "server/base/content_hash.h"
 
 namespace trapeze {
@@ -45,11 +46,13 @@ std::vector<Box> places_of(const Layer& features) {
   return places;
 }
 
-/// The number of features.
+/// The number of features that are drawn, as after a full reload: those without polygons have rows,
+/// too.
 std::size_t features_of(const Layer& layer) {
   std::size_t features = 0;
   for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
-    if (!layer.is_removed(row)) ++features;
+    const RingRange rings = layer.contents().rings_of(row);
+    if (!layer.is_removed(row) && rings.begin < rings.end) ++features;
   }
   return features;
 }

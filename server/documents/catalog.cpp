@@ -52,6 +52,15 @@ Json topologies_json(const ServedLayer& served) {
   return topologies;
 }
 
+/// The parameters that requests cannot set for the layer.
+Json locked_json(const LayerConfig& config) {
+  Json locked = Json::array();
+  for (const ParameterId parameter : config.locked) {
+    locked.push_back(style_parameter(parameter).name);
+  }
+  return locked;
+}
+
 Json layer_json(const ServedLayer& served, std::size_t position, const std::string& base_url) {
   const LayerConfig& config = served.config;
   const Box& box = served.layer->bounds();
@@ -78,6 +87,7 @@ Json layer_json(const ServedLayer& served, std::size_t position, const std::stri
   json["trapezoids"] = served.trapezoids();
   json["memory"] = served.memory();
   if (served.merge() > 0) json["merge"] = served.merge();
+  if (!config.locked.empty()) json["locked"] = locked_json(config);
   if (served.parts != nullptr) json["parts"] = served.parts->parts().size();
   json["repaired"] = served.report.repaired;
   json["skipped"] = served.report.skipped;

@@ -26,6 +26,9 @@ struct HttpRequest {
   std::string accept_encoding = {};                   // as sent; empty if none was
   std::string content_type = {};                      // of the body, as sent; empty if none was
   std::string content_encoding = {};                  // of the body, as sent; empty if none was
+  // Whether `client` is a trusted proxy itself, as it reports none: limits for one address do not
+  // apply.
+  bool is_of_proxy = false;
 };
 
 struct HttpResponse {

@@ -521,6 +521,7 @@ void HttpServer::Connection::take_header() {
               list_of(message, "Accept-Encoding"),
               text(http::field::content_type),
               text(http::field::content_encoding)};
+  request_.is_of_proxy = is_trusted_ && request_.client == peer_;
   // The host of an absolute target replaces that of the header (RFC 9112, section 3.2.2).
   const auto target = split_target(request_.target);
   if (target && !target->host.empty()) request_.host = target->host;
@@ -948,6 +949,19 @@ void HttpServer::State::wait_for_hangup() {
     wait_for_hangup();
     on_hangup_();
   });
+}
+
+std::string find_port_problem(const std::string& address, std::uint16_t port) {
+  ErrorCode error;
+  const tcp::endpoint endpoint(net::ip::make_address(address, error), port);
+  if (error) return {};  // the address is the problem
+  net::io_context io;
+  tcp::acceptor acceptor(io);
+  acceptor.open(endpoint.protocol(), error);
+  if (!error) acceptor.bind(endpoint, error);
+  return error == net::error::access_denied
+             ? fmt::format("cannot listen on {} port {}: {}", address, port, error.message())
+             : std::string();
 }
 
 HttpServer::HttpServer(const HttpServerOptions& options, Handler handler, Observer observer)

@@ -66,6 +66,10 @@ struct Answered {
 /// Called by the I/O threads, possibly by several at the same time.
 using Observer = std::function<void(const Answered& answered)>;
 
+/// Why this process may not listen on the port, whether or not it is free: ports below 1024 may be
+/// reserved to root. Empty if it may.
+std::string find_port_problem(const std::string& address, std::uint16_t port);
+
 class HttpServer {
  public:
   /// Opens the socket, so that clients can connect from then on. Throws std::runtime_error with

@@ -111,8 +111,10 @@ class ConfigCheck {
 
   void check_addresses() {
     check_address("server.address", config_.server.address);
+    note("server.port", find_port_problem(config_.server.address, config_.server.port));
     if (config_.admin.port == 0) return;
     check_address("admin.address", config_.admin.address);
+    note("admin.port", find_port_problem(config_.admin.address, config_.admin.port));
     const bool is_same = config_.admin.address == config_.server.address ||
                          is_among(config_.admin.address, config_.server.address) ||
                          is_among(config_.server.address, config_.admin.address);

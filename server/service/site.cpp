@@ -489,8 +489,9 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
     if (options_.posted_styles > 0 && memory > share_of_styles(options_)) {
       return problem_response(too_large_style(query.size(), options_));
     }
-    const auto pause =
-        post_limit_->take(limited_address(request.client), RateLimit::Clock::now(), memory);
+    const auto pause = request.is_of_proxy ? std::nullopt
+                                           : post_limit_->take(limited_address(request.client),
+                                                               RateLimit::Clock::now(), memory);
     if (pause) {
       return problem_response({429, "One address cannot post so many styles. Try again."}, *pause);
     }
@@ -532,9 +533,14 @@ void Site::handle_posted_values(const Target& target, const HttpRequest& request
   }
   const auto format = table_format(request.content_type, request.body);
   if (!format) return refuse(format.problem());
+  // However short it is, the table is joined to whole layers.
+  if (auto refusal = find_impatience(request, kDocumentCost)) return respond(*std::move(refusal));
   const auto bytes = static_cast<double>(request.body.size());
   const auto address = limited_address(request.client);
-  if (const auto pause = values_limit_->take(address, RateLimit::Clock::now(), bytes)) {
+  const auto pause = request.is_of_proxy
+                         ? std::nullopt
+                         : values_limit_->take(address, RateLimit::Clock::now(), bytes);
+  if (pause) {
     return respond(
         problem_response({429, "One address cannot post so many tables. Try again."}, *pause));
   }
@@ -661,6 +667,7 @@ void Site::handle_document(const Documents& documents, const Target& target,
 
 std::optional<HttpResponse> Site::find_impatience(const HttpRequest& request,
                                                   std::uint64_t cost) const {
+  if (request.is_of_proxy) return std::nullopt;
   const ClientAddress address = limited_address(request.client);
   const auto now = RateLimit::Clock::now();
   if (const auto pause = draw_limit_->take(address, now)) {

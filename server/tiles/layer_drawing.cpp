@@ -16,7 +16,8 @@
 namespace trapeze {
 namespace {
 
-/// The box widened to at least that many cells, around the same centre.
+/// The box widened to at least that many cells, around the same centre as far as the grid extends.
+/// Precondition: not wider than the grid.
 Box widened(const Box& box, std::int64_t width, std::int64_t height) {
   const auto widen = [](std::int32_t& min, std::int32_t& max, std::int64_t side) {
     const std::int64_t missing = side - (std::int64_t{max} - min);
@@ -598,13 +599,16 @@ GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selectio
   return has_classes ? GrainIndex::Births{0, selection.level} : selection.later_births();
 }
 
-/// The box, enlarged to the smallest size that is drawn.
+/// The box, enlarged to the smallest size that is drawn, which in a picture of a few pixels may be
+/// larger than the world.
 Box LayerDrawing::least_around(const Box& box) const {
   const double side = least_side_ * view_.shorter_side();
   const double middle = (static_cast<double>(box.min_y) + box.max_y) / 2;
   const double high = is_projected() ? side * mercator_stretch(middle) : side;
-  return widened(box, static_cast<std::int64_t>(std::ceil(side)),
-                 static_cast<std::int64_t>(std::ceil(high)));
+  const auto cells = [](double length) {
+    return static_cast<std::int64_t>(std::ceil(std::min(length, static_cast<double>(kGridSize))));
+  };
+  return widened(box, cells(side), cells(high));
 }
 
 // In one class, there are no more of them than pixels.
@@ -1027,6 +1031,18 @@ void LayerDrawing::for_each_painted(const Visit& visit) const {
   }
 }
 
+// In painting order: outlines of highlighted features, whose class is the last one, are above all
+// others. Which of the two were met first differs from tile to tile.
+template <typename Visit>
+void LayerDrawing::for_each_lines(const Visit& visit) const {
+  const Rgba uppermost = style().paints.back().stroke;
+  for (const bool is_uppermost : {false, true}) {
+    for (std::size_t i = 0; i < line_count_; ++i) {
+      if ((lines_[i].colour == uppermost) == is_uppermost) visit(lines_[i]);
+    }
+  }
+}
+
 Rgba LayerDrawing::colour_of(const ClassDrawing& drawing) const {
   Rgba colour = style().paints[drawing.number].fill;
   colour.a = drawing.alpha;
@@ -1040,14 +1056,9 @@ PaintedLayer LayerDrawing::painted() {
     painted_classes_.push_back(
         {drawing.is_full ? nullptr : &drawing.mask, colour_of(drawing), drawing.is_beneath});
   });
-  for (std::size_t i = 0; i < line_count_; ++i) {
-    painted_lines_.push_back({&lines_[i].mask, lines_[i].colour});
-  }
-  // Outlines of highlighted features, whose class is the last one, are above all others: which of
-  // the two were met first differs from tile to tile.
-  const Rgba uppermost = style().paints.back().stroke;
-  std::ranges::stable_sort(painted_lines_, {},
-                           [&](const PaintedClass& line) { return line.colour == uppermost; });
+  for_each_lines([this](const Lines& lines) {
+    painted_lines_.push_back({&lines.mask, lines.colour});
+  });
   return {painted_classes_, has_pattern() ? &pattern_ : nullptr, style().pattern.colour,
           painted_lines_, style().opacity};
 }
@@ -1085,12 +1096,11 @@ void LayerDrawing::add_lines_to(ContentHash& hash) const {
   hash.add(std::bit_cast<std::uint64_t>(scale_));
   hash.add(stroke.dashes.size());
   for (const double dash : stroke.dashes) hash.add(std::bit_cast<std::uint64_t>(dash));
-  for (std::size_t i = 0; i < line_count_; ++i) {
-    const Lines& lines = lines_[i];
+  for_each_lines([&](const Lines& lines) {
     hash.add(to_hex(lines.colour));
     add(outline_digest(points_of(lines), lines.edges, stroke, view_), hash);
     add(outline_digest(lines.seen_points.points, lines.seen_edges, stroke, view_), hash);
-  }
+  });
 }
 
 double LayerDrawing::tolerance() const {

@@ -254,6 +254,8 @@ class LayerDrawing {
   void leave_out_empty_lines();
   template <typename Visit>
   void for_each_painted(const Visit& visit) const;
+  template <typename Visit>
+  void for_each_lines(const Visit& visit) const;
   Rgba colour_of(const ClassDrawing& drawing) const;
   void add_pattern_to(ContentHash& hash, const View& picture) const;
   void add_lines_to(ContentHash& hash) const;

@@ -43,7 +43,7 @@ class TileCache::Shard {
   void insert(std::string_view key, std::uint64_t hash, const Tile& tile) {
     const std::size_t bytes = kOverhead + 2 * key.size() + tile.bytes->size();
     const std::lock_guard lock(mutex_);
-    if (bytes > budget_ / kSmallShare || entries_.contains(key)) return;
+    if (bytes > budget_ || entries_.contains(key)) return;
     while (bytes_ + bytes > budget_) evict();
     const bool is_back = ghosts_.contains(hash);
     Queue& queue = is_back ? main_ : small_;

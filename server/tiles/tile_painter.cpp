@@ -153,6 +153,10 @@ std::string TilePainter::fingerprint_of(const TilePlan& plan, const Sketch& sket
     if (is_drawn && drawings > 1) {
       hash.add(std::bit_cast<std::uint64_t>(drawings_[k].tolerance()));
     }
+    // Copies of one layer are added up; a layer lies over another one.
+    const bool is_copy =
+        k > sketch.first_drawing && drawings_[k].is_of_same_layer(drawings_[k - 1]);
+    if (is_copy) hash.add("copy");
     drawings_[k].add_to(hash, view);
   }
   for (const DrawnLabel& label : sketch.labels) {

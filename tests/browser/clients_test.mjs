@@ -200,6 +200,16 @@ for (const [name, words, lake, middle_tiles] of CLIENTS) {
   });
 }
 
+test("nginx lets pages of any origin read its answer for a tile that a folder lacks", async (context) => {
+  if (!nginx) {
+    context.skip("nginx is not installed");
+    return;
+  }
+  const answer = await fetch(`${nginx.base}tiles/6/0/0.png`);
+  assert.equal(answer.status, 204);
+  assert.equal(answer.headers.get("access-control-allow-origin"), "*");
+});
+
 for (const [layer, place, colour] of [
   ["land", { lon: 15, lat: 46 }, [0x40, 0x50, 0x60]],
   ["lake", { lon: 3, lat: 41 }, [0x10, 0x20, 0x30]],

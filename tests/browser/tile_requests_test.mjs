@@ -62,6 +62,32 @@ test("topology=fast is asked of those that are served with it", () => {
   assert.deepEqual(parts.map((part) => part.query), ["?topology=fast", ""]);
 });
 
+test("what a layer has locked is asked only of the others", () => {
+  const known = [...layers(1, { locked: ["simplify", "label-language"] }), layers(2)[1]];
+  const shared = new Map([["simplify", "4"], ["small", "keep"]]);
+  const [{ query, parts }] = tile_requests(drawn(known), settings(known, { shared }));
+  assert.equal(query, "?layer1.simplify=4&small=keep");
+  assert.deepEqual(parts.map((part) => part.query), ["?small=keep", "?simplify=4&small=keep"]);
+});
+
+test("a parameter of a layer and of all is given once, and that of the layer holds", () => {
+  const shared = new Map([["simplify", "4"]]);
+  const query_of = (known) =>
+    tile_requests(drawn(known, [["simplify", "1"]]), settings(known, { shared }))[0].query;
+  assert.equal(query_of(layers(1)), "?simplify=1");
+  assert.equal(query_of(layers(2)), "?layer0.simplify=1&layer1.simplify=1&simplify=4");
+});
+
+test("a parameter of all layers also holds where a named style sets it for one of them", () => {
+  const known = layers(2);
+  const shared = new Map([["style", "night"], ["simplify", "4"]]);
+  const named = { layers: { layer1: { simplify: 8, fill: "red" } } };
+  const [{ query }] = tile_requests(drawn(known), settings(known, { shared, named }));
+  assert.equal(query, "?layer1.simplify=4&style=night&simplify=4");
+  const { styled } = shared_style(drawn(known), settings(known, { shared, named }));
+  assert.deepEqual(styled.map(({ style }) => [...style]), [[], [["simplify", "4"]]]);
+});
+
 test("no layers are no requests", () => {
   assert.deepEqual(tile_requests([], settings(layers(2))), []);
 });

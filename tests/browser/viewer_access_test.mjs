@@ -154,6 +154,16 @@ for (const [device, options] of [["desktop", DESKTOP], ["phone", PHONE]]) {
   }
 }
 
+test("the legend keeps its colours where the system replaces those of pages", async () => {
+  const { page } = await open("#5/46/10", { ...DESKTOP, forcedColors: "active" });
+  const inks = page.locator("#legend .swatch .ink");
+  await inks.first().waitFor();
+  const colours = await inks.evaluateAll((found) =>
+    found.map((ink) => getComputedStyle(ink).backgroundColor));
+  assert.ok(colours.includes("rgb(216, 201, 155)"), colours.join(" "));
+  await page.context().close();
+});
+
 test("the page is small on the wire", async () => {
   const { page } = await new_page(browser);
   const sizes = [];

@@ -109,6 +109,10 @@ test("classes of one colour are one row of the legend, with their names on deman
   await rows.nth(1).locator("summary").click();
   assert.equal(await rows.nth(1).locator("p").isVisible(), true);
   await save_screenshot(page, "desktop-legend");
+  await page.focus("#map");
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => !location.hash.startsWith("#5/45.000/10.000"));
+  assert.equal(await rows.nth(1).locator("p").isVisible(), true, "the names stay while the map moves");
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });

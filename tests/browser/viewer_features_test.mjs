@@ -108,6 +108,8 @@ test("of several features one is chosen by button, and one is gone to", async ()
   assert.deepEqual(await features.locator("dd").allInnerTexts(), ["<b>island</b>", "–"]);
   assert.equal(await choices.nth(1).getAttribute("aria-pressed"), "true");
   assert.equal(await choices.nth(0).getAttribute("aria-pressed"), "false");
+  assert.ok(await choices.nth(1).evaluate((choice) => choice === document.activeElement),
+    "the focus stays where it was, so that Escape still closes the panel");
   await page.waitForFunction(() => location.hash.endsWith("&chosen=land/1"));
   await wait_for_outline(page, "land", 1);
   await features.getByRole("button", { name: "Go to it" }).click();

@@ -331,6 +331,20 @@ async function colour_on_screen(page, x, y) {
   }, [...picture]);
 }
 
+test("tiny shapes can be left a tint while features grow", async () => {
+  const { page, seen, land } = await open();
+  const small = page.getByLabel("Tiny shapes");
+  assert.equal(await small.inputValue(), "dust");
+  await slide(land.getByLabel("Grow"), 2);
+  await wait_for_query(page, "land", { grow: "2" });
+  assert.equal(await small.inputValue(), "keep");
+  await small.selectOption("as a tint");
+  await wait_for_query(page, "land", { grow: "2", small: "dust" });
+  await assert_survives_reload(page);
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
 test("compare shows every vertex right of a divider that pointer and keyboard move", async () => {
   const { page, seen } = await open("#5/46/10&on=land&simplify=64&debug=vertices");
   assert.equal(await page.getByLabel("Compare with separate polygons").count(), 0, "none share borders");

@@ -193,7 +193,7 @@ void check_steps(const TrapezoidalGraph& original, const MergePlan& plan) {
   while (stack.remove_next(graph, log)) {
     const Int128 now = doubled_area(graph, plan, false);
     const bool is_block =
-        stack.last_removal() == Removal::region && stack.last_block_area().has_value();
+        stack.last_removal() == Removal::region && stack.last_block_size().has_value();
     require(!is_block || now >= before, "a block is smaller than what it is made of");
     before = now;
   }

@@ -141,6 +141,14 @@ bool is_valid(const OGRGeometry& geometry) {
   return geometry.IsValid() != 0;
 }
 
+/// Whether polygons that are valid by themselves are valid together; also true if that cannot be
+/// checked.
+bool are_valid_together(const Polygons& polygons, const OGRGeometry& geometry) {
+  const std::size_t holes = polygons.rings.size() - polygons.size();
+  const bool can_be_checked = holes <= kMaxHolesToCheck && OGRGeometryFactory::haveGEOS();
+  return polygons.size() == 1 || !can_be_checked || is_valid(geometry);
+}
+
 std::unique_ptr<OGRPolygon> polygon_in_degrees(const OneOf& which, PolygonGeometry& result) {
   auto plain = plain_polygon(which, ExportCrs::degrees);
   if (!can_be_checked(which)) {
@@ -188,6 +196,8 @@ PolygonGeometry finer_geometry(const Polygons& polygons, double limit) {
     }
     return polygon;
   });
+  const bool is_complete = result.geometry != nullptr && !result.is_invalid;
+  if (is_complete && !are_valid_together(polygons, *result.geometry)) result.is_invalid = true;
   return result;
 }
 
@@ -214,6 +224,17 @@ PolygonGeometry geometry_of(const Polygons& polygons, ExportCrs crs) {
     return crs == ExportCrs::degrees ? polygon_in_degrees(which, result)
                                      : plain_polygon(which, crs);
   });
+  if (crs != ExportCrs::degrees || result.is_invalid ||
+      are_valid_together(polygons, *result.geometry)) {
+    return result;
+  }
+  // An island near a long edge of another polygon.
+  for (const double limit : kDeviations) {
+    PolygonGeometry finer = finer_geometry(polygons, limit);
+    if (finer.geometry == nullptr) break;
+    if (!finer.is_invalid) return finer;
+  }
+  result.is_invalid = true;
   return result;
 }
 

@@ -170,7 +170,14 @@ void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
     begin_part();
     ++part;
   }
-  if (part_ends_.empty()) separate_turns(0, feature);
+  if (part_ends_.empty()) {
+    separate_turns(0, feature);
+    // Its turns are parts even if the source does not name any.
+    const auto end = static_cast<std::uint32_t>(feature.rings.size());
+    if (!feature.part_ends.empty() && feature.part_ends.back() < end) {
+      feature.part_ends.push_back(end);
+    }
+  }
   if (feature.rings.empty()) check_degrees(feature);
 }
 

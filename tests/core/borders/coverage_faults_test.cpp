@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "core/borders/coverage_builder.h"
 #include "core/grid/web_mercator.h"
@@ -50,6 +53,28 @@ TEST(CoverageFaults, AGapHasItsAreaItsWidthAndThoseAroundIt) {
   EXPECT_NEAR(gap.width * metre, 200.0 / 102, 0.01);
   ASSERT_EQ(gap.polygons.size(), 1u);
   EXPECT_EQ(gap.polygons.rings.points.size(), 4u);
+}
+
+TEST(CoverageFaults, AGapThatIsLargeHasItsAreaOnTheGround) {
+  // 10 by 40 degrees, between two features.
+  const auto at = [](double lon, double lat) {
+    const GridPosition cell = grid_from_lonlat({lon, lat});
+    return std::to_string(std::lrint(cell.x)) + " " + std::to_string(std::lrint(cell.y));
+  };
+  const auto ring = [&at](const std::vector<LonLat>& places) {
+    std::string text;
+    for (const LonLat& p : places) text += (text.empty() ? "" : ", ") + at(p.lon, p.lat);
+    return text;
+  };
+  const auto found = faults_of(
+      {ring({{0, 0}, {10, 0}, {10, 10}, {5, 10}, {5, 50}, {10, 50}, {10, 60}, {0, 60}}),
+       ring({{10, 0}, {20, 0}, {20, 60}, {10, 60}, {10, 50}, {15, 50}, {15, 10}, {10, 10}})});
+  ASSERT_EQ(found.faults.size(), 1u);
+  const double radian = std::numbers::pi / 180;
+  const double radius = kCellsPerRadian / cells_from_ground(1, 0);
+  const double area =
+      radius * radius * 10 * radian * (std::sin(50 * radian) - std::sin(10 * radian));
+  EXPECT_NEAR(found.faults[0].area / area, 1, 1e-6);
 }
 
 TEST(CoverageFaults, AnOverlapHasThoseThatCoverIt) {

@@ -354,7 +354,7 @@ TEST(Merging, EveryStepLeavesASoundGraphAndCanBeUndone) {
     stack.assign(graph, {}, 1, &*built.outcome.plan);
     while (stack.remove_next(graph, log)) {
       ASSERT_EQ(check_graph(graph), "") << "after " << log.size() << " removals";
-      blocks += stack.last_removal() == Removal::region && stack.last_block_area().has_value();
+      blocks += stack.last_removal() == Removal::region && stack.last_block_size().has_value();
     }
     for (const NodeId n : graph.inside_nodes()) {
       ASSERT_TRUE(built.outcome.plan->is_void(graph.face(graph.node(n)))) << "never goes";
@@ -403,6 +403,39 @@ TEST(Merging, TwoHousesBecomeOneRectangleWhenTheDistanceIsReached) {
   EXPECT_TRUE(adaptable.graph().doubled_areas()[2] == 0);
   EXPECT_EQ(rings_of_features(adaptable.graph(), built.outcome.faces)[0].points.size(), 4u)
       << "corners only";
+}
+
+/// Squares of 1000 x 1000 cells, 8 by 4 of them, with streets between them; each a feature, or all
+/// of them one.
+std::vector<Rings> squares(bool are_one_feature) {
+  std::vector<Rings> features(are_one_feature ? 1 : 32);
+  for (int i = 0; i < 32; ++i) {
+    const std::int32_t x = i % 8 * 1400;
+    const std::int32_t y = i / 8 * 1400;
+    features[are_one_feature ? 0 : i].add(
+        std::vector<Point>{{x, y}, {x + 1000, y}, {x + 1000, y + 1000}, {x, y + 1000}});
+  }
+  return features;
+}
+
+TEST(Merging, AllEdgesOfABlockKnowHowLargeItIs) {
+  for (const bool are_one_feature : {false, true}) {
+    BuiltTown built(squares(are_one_feature), {.ratio = 16});
+    ASSERT_TRUE(built.outcome.plan);
+    History history;
+    HistoryRecorder().record(built.graph, built.outcome.faces, {}, history, nullptr, 1,
+                             &*built.outcome.plan);
+    const int level = level_above(400 / 16.0);
+    std::size_t edges = 0;
+    for (std::size_t i = 0; i < history.trapezoids.size(); ++i) {
+      if (!history.lifespans[i].contains(static_cast<Level>(level))) continue;
+      for (const std::uint32_t e : {history.trapezoids[i].left, history.trapezoids[i].right}) {
+        EXPECT_EQ(history.loop_sizes[e], loop_size_of(10'800.0 * 5'200.0)) << are_one_feature;
+        ++edges;
+      }
+    }
+    EXPECT_GE(edges, 2u);
+  }
 }
 
 TEST(Merging, OfTwoClassesNothingIsBridged) {

@@ -165,6 +165,14 @@ TEST(HttpLimitsTest, BehindATrustedProxyItIsTheClientThatIsLimited) {
   EXPECT_EQ(status_for("127.0.0.2", "203.0.113.4", 3), 429) << "who is not trusted cannot lie";
 }
 
+TEST(HttpLimitsTest, ATrustedProxyThatReportsNoClientIsNotLimited) {
+  RunningServer server(behind_local_proxy(), one_tile_per_client());
+  for (int x = 0; x < 4; ++x) {
+    const std::string tile = "/tiles/rings/3/" + std::to_string(x) + "/1.png";
+    EXPECT_EQ(RawClient(server.port(), "127.0.0.1").get(tile).status, 200);
+  }
+}
+
 TEST(HttpLimitsTest, WhatIsSentBehindABodyIsNoHeader) {
   RunningServer server(behind_local_proxy(), one_tile_per_client());
   const auto status_for = [&server](const std::string& trailer, int x) {

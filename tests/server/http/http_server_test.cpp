@@ -1,6 +1,7 @@
 #include "server/http/http_server.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <filesystem>
@@ -45,6 +46,15 @@ class HttpServerTest : public ::testing::Test {
   std::unique_ptr<HttpServer> server_;
   std::thread thread_;
 };
+
+TEST(FindPortProblemTest, APortThatIsReservedToRootIsAProblemThoughItIsFree) {
+  int first = 0;  // port that every process may open
+  std::ifstream("/proc/sys/net/ipv4/ip_unprivileged_port_start") >> first;
+  EXPECT_EQ(find_port_problem("127.0.0.1", 0), "");
+  if (geteuid() == 0 || first <= 1) GTEST_SKIP() << "this process may open all ports";
+  const auto reserved = static_cast<std::uint16_t>(first - 1);
+  EXPECT_THAT(find_port_problem("127.0.0.1", reserved), ::testing::HasSubstr("cannot listen on"));
+}
 
 TEST_F(HttpServerTest, ServesSeveralRequestsOverOneConnection) {
   start();

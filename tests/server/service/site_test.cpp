@@ -178,6 +178,20 @@ TEST(SiteLimitsTest, WhatDearTilesCostIsLimitedAndCheapOnesAreNot) {
   EXPECT_EQ(site.get("/legend/rings.png").status, 429) << "a document that is not kept";
 }
 
+TEST(SiteLimitsTest, PostedTablesCostWhatDocumentsCost) {
+  testing::SampleSite site(true, {}, {.cost_per_second = 0.001, .cost_burst = 600'000});
+  const auto post = [&site](int number, std::uint8_t client) {
+    HttpRequest request{
+        "POST", "/values", "maps.example", {}, "key,value\na," + std::to_string(number)};
+    request.client.bytes[0] = client;
+    return site.handle(request).status;
+  };
+  EXPECT_EQ(post(1, 1), 201);
+  EXPECT_EQ(post(2, 1), 201);
+  EXPECT_EQ(post(3, 1), 429) << "short tables keep the worker busy, too";
+  EXPECT_EQ(post(3, 2), 201);
+}
+
 TEST(SiteLimitsTest, OneAddressMayPostOnlyAShareOfTheStyles) {
   testing::SampleSite site(true, {}, {.posted_styles = 100'000});
   const auto post = [&site](int number, std::uint8_t client) {
@@ -348,6 +362,14 @@ TEST_F(SiteTest, ALayerIsDrawnWithoutTheTopologyTestOnlyWhereTheConfigurationAsk
   const auto layers = nlohmann::json::parse(*get("/catalog").body)["layers"];
   EXPECT_EQ(layers[0]["topologies"], nlohmann::json({"fast", "strict"}));
   EXPECT_EQ(layers[1]["topologies"], nlohmann::json({"strict"}));
+}
+
+TEST_F(SiteTest, TheCatalogListsWhatIsLocked) {
+  auto layers = layers_of_files({testing::fixture("rings.geojson")});
+  layers[0].locked = {ParameterId::simplify, ParameterId::fill_opacity};
+  sample_.data().set(Dataset::load(layers));
+  const auto listed = nlohmann::json::parse(*get("/catalog").body)["layers"];
+  EXPECT_EQ(listed[0]["locked"], nlohmann::json({"simplify", "fill-opacity"}));
 }
 
 /// The opacities in the tile of zoom 0 with the speck, which covers a sixteenth of one pixel.

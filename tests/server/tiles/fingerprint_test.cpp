@@ -177,6 +177,24 @@ TEST_P(FingerprintTest, OtherLayersAndNamesDoNotMatter) {
             fingerprint(land.load(), "land" + tile));
 }
 
+// What one layer has on both sides of the antimeridian adds up; a layer lies over another one.
+TEST_P(FingerprintTest, CopiesOfALayerAreNotLayersOverEachOther) {
+  const TemporaryFolder folder;
+  const auto features = [](const std::string& polygons) {
+    return R"({"type": "MultiPolygon", "coordinates": [)" + polygons + "]}";
+  };
+  const std::string west = "[[[160, 10], [180, 10], [180, 35], [160, 35], [160, 10]]]";
+  const std::string east = "[[[-179.9, 5], [-170, 5], [-170, 40], [-179.9, 40], [-179.9, 5]]]";
+  const auto dataset = Dataset::load(layers_of_files(
+      {folder.write("west.geojson", features(west)), folder.write("east.geojson", features(east)),
+       folder.write("both.geojson", features(west + ", " + east))}));
+  const std::string style = "/3/7/3.png?fill=blue&stroke=red&stroke-width=10";
+  const PaintedTile one = paint(dataset, "both" + style);
+  const PaintedTile two = paint(dataset, "east,west" + style);
+  EXPECT_NE(*one.bytes, *two.bytes);
+  EXPECT_NE(one.fingerprint, two.fingerprint);
+}
+
 TEST_P(FingerprintTest, MarksAreOfOneTileAndLayer) {
   testing::EditedLand land(5);
   const auto dataset = land.load();

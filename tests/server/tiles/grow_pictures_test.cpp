@@ -195,6 +195,20 @@ TEST_F(GrowPicturesTest, TilesFitTogether) {
   }
 }
 
+// What is wider than the world covers all of it.
+TEST_F(GrowPicturesTest, APictureOfAFewPixelsIsCoveredByWhatIsWider) {
+  for (const std::string window : {"crs=EPSG:3857&bbox=-20037508,-20037508,20037508,20037508",
+                                   "crs=EPSG:4326&bbox=-180,-85,180,85"}) {
+    for (const std::string size : {"1", "2", "3"}) {
+      for (const std::string width : {"10", "12", "16"}) {
+        const std::string query = window + "&width=" + size + "&height=" + size + "&grow=" + width;
+        const Picture picture = testing::picture_of(site_, "/map/islet.png?quality=exact&" + query);
+        for (const Rgba pixel : picture.pixels) EXPECT_EQ(pixel.a, 255) << query;
+      }
+    }
+  }
+}
+
 TEST_F(GrowPicturesTest, ARiverTakesFromItsFieldsWhatItGets) {
   const std::string classes = "&color-by=kind&classes=field:fc0,river:00f";
   const Picture before = tile("land/0/0/0", "grow=0" + classes);

@@ -84,6 +84,15 @@ TEST(TileCacheTest, ATileTooLargeForTheBudgetIsNotKept) {
   EXPECT_EQ(cache.figures().bytes, 0u);
 }
 
+TEST(TileCacheTest, ATileThatFitsIntoAShardIsKept) {
+  TileCache cache(kBudget);
+  for (int i = 0; i < 1'000; ++i) cache.insert(key("small", i), tile('s'));
+  cache.insert("large", tile('l', kBudget / 16 / 2));
+  EXPECT_NE(cache.find("large").bytes, nullptr);
+  for (int i = 0; i < 20'000; ++i) cache.insert(key("scan", i), tile('s'));
+  EXPECT_LE(cache.figures().bytes, kBudget);
+}
+
 TEST(TileCacheTest, WithoutABudgetNothingIsKept) {
   TileCache cache(0);
   cache.insert("a", tile('a', 0));

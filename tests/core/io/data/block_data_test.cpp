@@ -55,7 +55,7 @@ TEST(BlockDataTest, LandBecomesBlocksWithinAClassAndNeverAcross) {
   while (const auto epsilon = stack.remove_next(graph, log)) {
     if (*epsilon > testing::epsilon_of_zoom(11)) break;
     const bool is_block =
-        stack.last_removal() == Removal::region && stack.last_block_area().has_value();
+        stack.last_removal() == Removal::region && stack.last_block_size().has_value();
     if (is_block) {
       for (const auto& kept : log.touched_edges()) {
         const Edge& edge = graph.edge(kept.id);

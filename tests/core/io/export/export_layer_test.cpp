@@ -569,6 +569,26 @@ TEST(ExportLayerTest, LongEdgesGetVerticesInDegreesWhereThePolygonWouldNotBeVali
   EXPECT_TRUE(Written(output).are_all_valid());
 }
 
+// The island lies beside the long edge as it runs on the Web Mercator map, and within the polygon
+// if that edge is drawn straight in degrees.
+TEST(ExportLayerTest, LongEdgesGetVerticesInDegreesWhereAnIslandWouldLieWithinThePolygon) {
+  const TemporaryFolder folder;
+  const std::string island = "((3000730 2998700,3001300 2998700,3001300 2999300,3000730 2998700))";
+  const std::string source = metres_source(
+      folder, {{.wkt = "MULTIPOLYGON(((0 0,6000000 6000000,0 6000000,0 0))," + island + ")"},
+               {.wkt = "POLYGON" + island}});
+  const std::string output = folder.file("out.gpkg");
+  for (const CoverageMode coverage : {CoverageMode::off, CoverageMode::on}) {
+    ExportOptions options;
+    options.generalization.coverage = coverage;
+    options.overwrite = true;
+    const ExportReport report = export_layer(source, output, options);
+    EXPECT_GT(report.subdivided, 0u);
+    EXPECT_EQ(report.invalid, 0u);
+    EXPECT_TRUE(Written(output).are_all_valid());
+  }
+}
+
 // A and B share a long edge, near which A has a vertex. C has a vertex that almost touches its own
 // long edge, so no number of additional vertices makes it valid in degrees.
 TEST(ExportLayerTest, AFeatureThatIsNotValidInDegreesLeavesTheBordersOfOthersIdentical) {

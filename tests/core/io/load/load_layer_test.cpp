@@ -295,6 +295,24 @@ INSTANTIATE_TEST_SUITE_P(AllowedFormats, FormatTest,
                            return name;
                          });
 
+// Their rings do not name the polygons to which they belong.
+TEST_F(LoadLayerTest, KeepsWhatAShapefileCoversTwiceAroundTheWorld) {
+  const std::string path = folder_.file("a.shp");
+  // The arm in the north-west lies beyond the antimeridian, and so does the end of the band in the
+  // second one.
+  write_source(
+      path, "ESRI Shapefile",
+      {{.type = wkbPolygon,
+        .features = {{"POLYGON((-190 -20,-190 60,-182 60,-182 20,175 20,175 -20,-190 -20))"},
+                     {"POLYGON((-190 -20,-190 60,-182 60,-182 20,185 20,185 -20,"
+                      "-190 -20))"}}}});
+  const LoadedLayer loaded = load_layer(path);
+  ASSERT_EQ(loaded.report.loaded, 2u);
+  const double arm = rectangle(170, 20, 178, 60);
+  expect_area(*loaded.layer, 0, rectangle(-180, -20, 180, 20) + arm);
+  expect_area(*loaded.layer, 1, rectangle(-180, -20, 180, 20) + arm);
+}
+
 TEST_F(LoadLayerTest, ReadsKmlThroughWhicheverDriverKnowsIt) {
   const std::string path = folder_.file("a.kml");
   write_source(path, "KML", {{.features = {{"POLYGON((10 10,11 10,11 11,10 11,10 10))", 5, "a"}}}});
