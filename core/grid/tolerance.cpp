@@ -30,10 +30,14 @@ double epsilon_of_level(Level level) {
 }
 
 Level nearest_level(double epsilon) {
+  // At quarters of a zoom, usual tolerances lie in the middle between two levels. Windows side by
+  // side, whose pixels differ by their rounding, must get the same one.
+  constexpr double kBeyondRounding = 1.0 / 256;
+  const double place = epsilon > 0 ? steps(epsilon) + kBeyondRounding : -1;
   // More than half a step below the first level.
-  if (!(epsilon > 0) || steps(epsilon) < -0.5) return 0;
+  if (place < -0.5) return 0;
   return static_cast<Level>(
-      std::clamp(static_cast<int>(std::lround(steps(epsilon))) + 1, 1, int{kLastLevel}));
+      std::clamp(static_cast<int>(std::lround(place)) + 1, 1, int{kLastLevel}));
 }
 
 int level_above(double epsilon) {

@@ -23,8 +23,9 @@ constexpr Level kNeverDies = 255;  // the end of a lifespan that extends beyond 
 double epsilon_of_level(Level level);
 
 /// The level nearest to `epsilon` (cells, >= 0) on a logarithmic scale: its tolerance is between
-/// 2^-1/4 and 2^1/4 times `epsilon`. Level 0 if `epsilon` is less than that, kLastLevel if it is
-/// more.
+/// 2^-1/4 and 2^1/4 times `epsilon`, up to about a thousandth. Tolerances in the middle between two
+/// levels, except for the rounding of windows, all get the coarser one. Level 0 if `epsilon` is
+/// less than that, kLastLevel if it is more.
 Level nearest_level(double epsilon);
 
 /// The first level whose tolerance exceeds `epsilon`, kLastLevel + 1 if there is none: the

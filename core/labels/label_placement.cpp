@@ -221,8 +221,11 @@ void LabelPlacement::sort_by_place() {
 
 std::optional<int> LabelPlacement::step_of(double pixels_per_cell) {
   const auto& all = scales();
-  // Zooms of tiles are powers of two, so only those of windows are affected by rounding.
-  const auto above = std::ranges::upper_bound(all, pixels_per_cell * (1 + 1e-12));
+  // The sides of windows are rounded to cells, so that pixels of windows side by side differ; at
+  // half zooms, they must get the same step. Labels then overlap by no more than that share of
+  // their size.
+  constexpr double kRounding = 5e-4;
+  const auto above = std::ranges::upper_bound(all, pixels_per_cell * (1 + kRounding));
   if (above == all.begin()) return std::nullopt;
   return static_cast<int>(above - all.begin()) - 1;
 }

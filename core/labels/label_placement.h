@@ -48,8 +48,8 @@ class LabelPlacement {
   /// cells of a plane that repeats from west to east; 0 if it does not repeat.
   LabelPlacement(std::vector<LabelCandidate> candidates, double world_width);
 
-  /// The last step whose scale does not exceed the given one, in pixels per cell; none below step
-  /// 0.
+  /// The last step whose scale does not exceed the given one, in pixels per cell, except for the
+  /// rounding of windows; none below step 0.
   static std::optional<int> step_of(double pixels_per_cell);
   static double pixels_per_cell_of(int step);
 

@@ -95,7 +95,7 @@ bool FeatureStack::find_covers(const Cancellation* cancellation) {
       if (other_number == kNone) continue;
       Feature& other = features_[other_number];
       const bool are_alike = are_all_opaque && other.paint.colour == feature.paint.colour;
-      if (are_alike && overlap.along == 0) continue;
+      if (are_alike && options_.is_fine && overlap.along == 0) continue;
       if (other.paint.opacity <= 0 || !feature.is_below(other)) continue;
       feature.covers.push_back(other_number);
       feature.is_in_a_pair = other.is_in_a_pair = true;

@@ -38,11 +38,14 @@ class FeatureStack {
     bool cuts_whole_features = false;
     /// Whether all features are opaque and of one colour.
     bool is_plain = false;
+    /// Whether pixels are so small that boundaries which do not run along each other (see
+    /// FeatureOverlap::along) share no pixels, except where they cross.
+    bool is_fine = false;
   };
 
   /// Starts over with the trapezoids of a mesh; the arguments must outlive the use of the stack. If
-  /// all features are opaque, those of one colour are cut only where their boundaries run along
-  /// each other, because there their areas together exceed the area they cover.
+  /// all features are opaque, those of one colour are cut only where their boundaries may run
+  /// through the same pixels, because there their areas together exceed the area they cover.
   void begin(const OverlapTable& overlaps, const MeshView& mesh, const Options& options);
 
   /// Registers a feature; may be called repeatedly. paint_of(row) is called once for each feature.
@@ -98,7 +101,8 @@ class FeatureStack {
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   bool can_matter(std::uint32_t row) const {
-    return options_.is_plain ? overlaps_->runs_along_another(row) : !overlaps_->of(row).empty();
+    return options_.is_plain && options_.is_fine ? overlaps_->runs_along_another(row)
+                                                 : !overlaps_->of(row).empty();
   }
   Box box_around(std::uint32_t trapezoid) const;
   std::size_t slot_of(std::uint32_t row) const;

@@ -15,8 +15,8 @@
 namespace trapeze {
 namespace {
 
-constexpr double kNarrowest = 2;                           // cells
-constexpr double kAlong = 32;                              // cells apart, at most: half a metre
+constexpr double kNarrowest = 2;  // cells
+constexpr double kAlong = FeatureOverlap::kAlong;
 constexpr std::size_t kMostPairsOf = 16;                   // per trapezoid
 constexpr std::size_t kLeastPairs = std::size_t{1} << 20;  // 12 MB
 constexpr std::uint64_t kMostStepsOf = 1024;               // per trapezoid

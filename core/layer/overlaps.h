@@ -22,8 +22,9 @@ struct FeatureOverlap {
   /// extent.
   std::uint32_t width = 0;
   /// The length along which both boundaries coincide there, with the insides on the same side, in
-  /// cells.
+  /// cells. They may be up to kAlong cells apart.
   std::uint32_t along = 0;
+  static constexpr double kAlong = 32;  // half a metre
 
   /// An overlap of features of a coverage that share a face: however much their borders are
   /// simplified, it is the same place for both, with the same trapezoids.

@@ -25,6 +25,13 @@ constexpr double kPhases = 4294967296.0;
 // Of worlds that are narrower, as they are in pictures of a few pixels, patterns are not changed.
 constexpr double kLeastPeriodsOfWorld = 4 - 1e-6;
 
+/// The nearest of 2048 sizes per octave, among which are those of tiles. The sides of windows, and
+/// thus their pixels, are rounded, which must not move the patterns of neighbours.
+double rounded_size(double size) {
+  constexpr double kSizesPerOctave = 2048;
+  return std::exp2(std::round(std::log2(size) * kSizesPerOctave) / kSizesPerOctave);
+}
+
 /// The phase of any number of periods.
 std::uint32_t to_phase(double periods) {
   return static_cast<std::uint32_t>(
@@ -54,23 +61,27 @@ void PlacedPattern::place(const Pattern& pattern, const View& view, double scale
   // Periods per pixel; rows run southwards.
   along_x_ = std::cos(angle) / period;
   along_y_ = -std::sin(angle) / period;
-  if (view.projection != Projection::plane) join_around_the_world(view);
+  if (view.projection != Projection::plane) join_around_the_world(view, scale);
   period_ = 1 / std::sqrt(along_x_ * along_x_ + along_y_ * along_y_);
   const double band_width = kind_ == PatternKind::checker ? period / 2 : pattern.width * scale;
   band_width_ = band_width * (period_ / period);
   west_ = static_cast<double>(view.origin_x - kGridMin) / view.cells_per_pixel + 0.5;
-  north_ = static_cast<double>(view.origin_y - kGridMin) / view.cells_per_row() + view.first_row;
+  const double row = view.cells_per_pixel * rounded_size(view.stretch);
+  row_height_ = view.cells_per_row() / row;
+  north_ = static_cast<double>(view.origin_y - kGridMin) / row + view.first_row * row_height_;
   if (kind_ != PatternKind::none && kind_ != PatternKind::dots) bands_.assign(period_, band_width_);
 }
 
 // From one end of the world to the other, a whole number of periods in either direction of the
 // pattern: then a translation by the world leaves it as it is, and nobody sees where the world
-// begins.
-void PlacedPattern::join_around_the_world(const View& view) {
+// begins. That number must be the same for windows side by side, although their sides, and thus
+// their pixels, are rounded.
+void PlacedPattern::join_around_the_world(const View& view, double scale) {
   const double world = static_cast<double>(kGridSize) / view.cells_per_pixel;
   if (std::hypot(along_x_, along_y_) * world < kLeastPeriodsOfWorld) return;
-  along_x_ = std::round(along_x_ * world) / world;
-  along_y_ = std::round(along_y_ * world) / world;
+  const double rounded = rounded_size(world / scale) * scale;
+  along_x_ = std::round(along_x_ * rounded) / world;
+  along_y_ = std::round(along_y_ * rounded) / world;
 }
 
 void PlacedPattern::draw(int row, std::size_t begin, std::size_t end, std::uint8_t* values) const {
@@ -123,7 +134,7 @@ void PlacedPattern::draw_by(int row, std::size_t begin, std::size_t end, std::ui
                             const ShareAt& share_at) const {
   const Phases step{to_phase(along_x_), to_phase(-along_y_)};
   const auto columns = static_cast<std::uint32_t>(begin);
-  Phases at = phases_at(west_, north_ + row + 0.5);
+  Phases at = phases_at(west_, north_ + (row + 0.5) * row_height_);
   at.along += columns * step.along;
   at.across += columns * step.across;
   for (std::size_t i = begin; i < end; ++i) {

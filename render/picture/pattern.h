@@ -75,7 +75,7 @@ class PlacedPattern {
                const ShareAt& share_at) const;
   void draw_dots(int row, std::size_t begin, std::size_t end, std::uint8_t* values) const;
   Phases phases_at(double x, double y) const;
-  void join_around_the_world(const View& view);
+  void join_around_the_world(const View& view, double scale);
 
   PatternKind kind_ = PatternKind::none;
   int width_ = 0;
@@ -84,6 +84,7 @@ class PlacedPattern {
   double band_width_ = 1;
   double west_ = 0;  // of the centre of the first pixel, from the corner of the world
   double north_ = 0;
+  double row_height_ = 1;  // as a multiple of the nominal one
   // The direction of the pattern, as long as there are periods in a pixel.
   double along_x_ = 1;
   double along_y_ = 0;

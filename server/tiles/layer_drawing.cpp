@@ -511,12 +511,14 @@ bool LayerDrawing::is_raised(std::uint8_t number) const {
 }
 
 // Whether features of the layer overlap here. Features of one colour are cut as well: where their
-// edges run along each other, their areas would add up to more than they cover.
+// edges run through the same pixels, their areas would add up to more than they cover.
 bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Selection& selection,
                               DrawingTools& tools) {
   if (layer_->overlaps().empty()) return false;
-  tools.stack.begin(layer_->overlaps(), layer_->mesh(),
-                    {epsilon_of_level(selection.pixel_level), has_lines(), is_plain(style())});
+  const bool is_fine = view_.longer_side() <= FeatureOverlap::kAlong;
+  tools.stack.begin(
+      layer_->overlaps(), layer_->mesh(),
+      {epsilon_of_level(selection.pixel_level), has_lines(), is_plain(style()), is_fine});
   const auto paint_of = [&](std::uint32_t row) {
     const std::uint8_t number = number_of(classes, row);
     const Rgba fill = style().paints[number].fill;
@@ -1004,9 +1006,12 @@ void LayerDrawing::take_over(LayerDrawing& copy) {
   };
   for (std::size_t i = 0; i < copy.class_count_; ++i) {
     ClassDrawing& theirs = copy.classes_[i];
-    if (!theirs.is_drawn) continue;
+    if (!theirs.is_full && !theirs.is_drawn) continue;
     ClassDrawing& ours = theirs.is_beneath ? drawing_beneath(theirs.number, theirs.alpha)
                                            : class_drawing(theirs.number);
+    // Then this copy is beside the picture, and only its lines reach into it.
+    ours.is_full = ours.is_full || theirs.is_full;
+    if (!theirs.is_drawn) continue;
     take(theirs.mask, !ours.is_drawn, ours.mask, sum_of);
     ours.is_drawn = true;
   }
@@ -1079,8 +1084,8 @@ void LayerDrawing::add_pattern_to(ContentHash& hash, const View& picture) const 
   const Pattern& pattern = style().pattern;
   hash.add(kPatternNames.name_of(pattern.kind));
   hash.add(to_hex(pattern.colour));
-  for (const double length :
-       {pattern.size, pattern.angle, pattern.width, picture.cells_per_pixel, scale_}) {
+  for (const double length : {pattern.size, pattern.angle, pattern.width, picture.cells_per_pixel,
+                              picture.stretch, scale_}) {
     hash.add(std::bit_cast<std::uint64_t>(length));
   }
   // Where the world repeats, patterns are adapted to it.

@@ -17,7 +17,15 @@ TEST(Tolerance, DefaultOfEveryWholeZoomIsOnTheLadder) {
 TEST(Tolerance, AnyToleranceIsWithinAQuarterOfAFactorOfTwoOfItsLevel) {
   for (double epsilon = 0.45; epsilon < 5e8; epsilon *= 1.013) {
     const double off = std::log2(epsilon_of_level(nearest_level(epsilon)) / epsilon);
-    EXPECT_LE(std::abs(off), 0.25 + 1e-9) << epsilon;
+    EXPECT_LE(std::abs(off), 0.25 + 1.0 / 512 + 1e-9) << epsilon;
+  }
+}
+
+// The pixels of windows side by side differ by as much as their sides are rounded.
+TEST(Tolerance, RoundedPixelsAtQuarterZoomsHaveOneLevel) {
+  for (double zoom = 0.25; zoom < 18; zoom += 0.5) {
+    const double epsilon = 0.25 * std::exp2(23 - zoom);
+    EXPECT_EQ(nearest_level(epsilon * (1 - 2e-4)), nearest_level(epsilon * (1 + 2e-4))) << zoom;
   }
 }
 

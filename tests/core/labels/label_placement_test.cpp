@@ -70,6 +70,14 @@ void expect_well_placed(const LabelPlacement& placement, double world) {
   }
 }
 
+TEST(LabelPlacementTest, RoundedPixelsAtHalfZoomsHaveOneStep) {
+  for (int step = 1; step < 36; ++step) {
+    const double scale = LabelPlacement::pixels_per_cell_of(step);
+    EXPECT_EQ(LabelPlacement::step_of(scale * (1 - 2e-4)), step);
+    EXPECT_EQ(LabelPlacement::step_of(scale * (1 + 2e-4)), step);
+  }
+}
+
 TEST(LabelPlacementTest, NoneOverlapAndNoneIsMissingAtAnyScale) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);

@@ -31,6 +31,7 @@ class SeenAreas {
   void set_narrowest(double cells) { narrowest_ = cells; }
   void cut_whole_features() { cuts_whole_features_ = true; }
   void set_plain() { is_plain_ = true; }
+  void set_coarse() { is_fine_ = false; }
 
   std::map<std::pair<std::uint32_t, float>, double> areas(
       const Cancellation* cancellation = nullptr) {
@@ -51,7 +52,7 @@ class SeenAreas {
       if (top < bottom) add(row, 1, top, bottom, t.left, t.right);
     };
     FeatureStack stack;
-    stack.begin(layer_->overlaps(), mesh, {narrowest_, cuts_whole_features_, is_plain_});
+    stack.begin(layer_->overlaps(), mesh, {narrowest_, cuts_whole_features_, is_plain_, is_fine_});
     for_each_trapezoid(ranges, [&](std::uint32_t i) {
       stack.note(layer_->feature_of(i), [this](std::uint32_t row) { return paints_[row]; });
     });
@@ -81,6 +82,7 @@ class SeenAreas {
   double narrowest_ = 0;
   bool cuts_whole_features_ = false;
   bool is_plain_ = false;
+  bool is_fine_ = true;
   std::size_t cut_up_ = 0;
 };
 
@@ -143,6 +145,16 @@ TEST(FeatureStackTest, FeaturesOfOneColourAreCutWhereTheirBoundariesRunAlongEach
   EXPECT_EQ(seen.areas(), expected);
   seen.set_plain();
   EXPECT_EQ(seen.areas(), expected);
+}
+
+// Their boundaries are 200 cells apart, which may be less than a pixel.
+TEST(FeatureStackTest, FeaturesOfOneColourAreCutWherePixelsAreLarge) {
+  SeenAreas seen({"0 0, 1000 0, 1000 1000, 0 1000", "200 200, 600 200, 600 600, 200 600"});
+  for (const std::uint32_t row : {0u, 1u}) seen.paint(row).colour = 7;
+  seen.set_plain();
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 1e6}, {{1, 1}, 1.6e5}}));
+  seen.set_coarse();
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 8.4e5}, {{1, 1}, 1.6e5}}));
 }
 
 TEST(FeatureStackTest, OnlyTrapezoidsNearOtherFeaturesAreCutUp) {

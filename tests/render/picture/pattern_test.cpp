@@ -130,6 +130,35 @@ TEST(PatternTest, NeighbouringTilesJoin) {
   }
 }
 
+// The sides of windows are rounded to cells, so that their pixels are not all of the same size.
+TEST(PatternTest, NeighbouringWindowsOfAnySizeOfPixelsJoin) {
+  constexpr double kPixel = 1217.748;  // in cells: zoom 12.75
+  const auto window = [](int column, int row) {
+    const auto side = [](int i) { return std::llround(i * 256 * kPixel); };
+    View view;
+    view.width = view.height = 256;
+    view.origin_x = kGridMin + side(6000 + column);
+    view.origin_y = kGridMin + side(4000 + row);
+    view.cells_per_pixel = static_cast<double>(side(6001 + column) - side(6000 + column)) / 256;
+    const double high = static_cast<double>(side(4001 + row) - side(4000 + row)) / 256;
+    view.stretch = high / view.cells_per_pixel;
+    return view;
+  };
+  for (const PatternKind kind : {PatternKind::hatch, PatternKind::checker, PatternKind::dots}) {
+    const Pattern pattern{kind, {}, 16, 30, 8};
+    for (int i = 0; i < 8; ++i) {
+      // The columns of the world are a whole number of periods apart, but for a share of a pixel.
+      View moved = window(0, 0);
+      const View there = window(i, i);
+      moved.origin_x = there.origin_x;
+      moved.origin_y = there.origin_y;
+      const Mask here = draw(pattern, moved);
+      const Mask next = draw(pattern, there);
+      for (int k = 0; k < 256; ++k) ASSERT_NEAR(here.at(k, k), next.at(k, k), 8) << i << " " << k;
+    }
+  }
+}
+
 TEST(PatternTest, LengthsGrowWithTheScale) {
   const Pattern pattern{PatternKind::dots, {}, 12, 0, 5};
   const Mask one = draw(pattern);

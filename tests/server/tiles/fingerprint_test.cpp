@@ -195,6 +195,29 @@ TEST_P(FingerprintTest, CopiesOfALayerAreNotLayersOverEachOther) {
   EXPECT_NE(one.fingerprint, two.fingerprint);
 }
 
+// Of the copy of the world beside the picture, only a line reaches into it.
+TEST_P(FingerprintTest, LinesFromBeyondTheAntimeridianLeaveTheFill) {
+  const TemporaryFolder folder;
+  std::string polygons;
+  for (const std::string x : {"-180", "177"}) {
+    const std::string end = x == "177" ? "180" : "-177";
+    for (const auto& [south, north] : {std::pair("-14", "-8.5"), std::pair("-8.5", "-5")}) {
+      const std::string start = x + ", " + south + "]";
+      polygons += (polygons.empty() ? "" : ",") +
+                  (R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", )"
+                   R"("coordinates": [[[)" +
+                   start + ", [" + end + ", " + south + "], [" + end + ", " + north + "], [" + x +
+                   ", " + north + "], [" + start + "]]}}");
+    }
+  }
+  const std::string text = R"({"type": "FeatureCollection", "features": [)" + polygons + "]}";
+  const auto dataset = Dataset::load(layers_of_files({folder.write("grid.geojson", text)}));
+  for (const std::string tile : {"grid/7/0/67.png", "grid/7/127/67.png"}) {
+    const PaintedTile painted = paint(dataset, tile + "?fill=blue&stroke=blue");
+    EXPECT_EQ(painted.hint, TileHint::full) << tile;
+  }
+}
+
 TEST_P(FingerprintTest, MarksAreOfOneTileAndLayer) {
   testing::EditedLand land(5);
   const auto dataset = land.load();
