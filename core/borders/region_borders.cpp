@@ -371,10 +371,11 @@ RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   return united;
 }
 
-/// Sizes have steps, so a block that grows is walked around only now and then.
+/// A block that grows is walked around only now and then: when its extent has grown by a quarter.
 void RegionBorders::note_block(RegionId block) {
+  constexpr int kSteps = 3;
   block_size_ = loop_size_of(moments_[block].area);
-  if (known_sizes_[block] >= *block_size_) return;
+  if (known_sizes_[block] + kSteps > *block_size_) return;
   known_sizes_[block] = *block_size_;
   collect_arcs(block);
   block_edges_ = edges_;

@@ -95,8 +95,8 @@ class RegionBorders {
   std::span<const Taken> taken() const { return taken_; }
   /// Size of the loop around the resulting block; none if no block resulted.
   std::optional<LoopSize> block_size() const { return block_size_; }
-  /// All edges of the resulting block, if it has grown; if empty, the edges whose face has not
-  /// changed know its size already.
+  /// All edges of the resulting block, if its extent has grown by a quarter; if empty, edges whose
+  /// face has not changed know its size, or almost.
   std::span<const EdgeId> block_edges() const { return block_edges_; }
   /// Vertices that lost an edge.
   std::span<const VertexId> changed() const { return changed_; }

@@ -14,7 +14,7 @@ std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> shared(
     std::map<std::string, StyleQuery>&& named) {
   std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> styles;
   for (auto& [name, style] : named) {
-    styles.emplace(name, std::make_shared<const StyleQuery>(std::move(style)));
+    styles.emplace(name, std::make_shared<const StyleQuery>(std::move(style).configured()));
   }
   return styles;
 }

@@ -872,6 +872,11 @@ StyleQuery StyleQuery::with_tables(const FindTable& find) && {
   return std::move(*this);
 }
 
+StyleQuery StyleQuery::configured() && {
+  for (StyleSetting& setting : settings_) setting.is_configured = true;
+  return std::move(*this);
+}
+
 bool StyleQuery::sets(const StyleSetting& setting) const {
   return std::ranges::any_of(settings_, [&setting](const StyleSetting& own) {
     return own.layer == setting.layer &&

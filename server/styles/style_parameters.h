@@ -164,6 +164,7 @@ struct StyleSetting {
   std::string layer;
   ParameterId parameter;
   ParameterValue value;
+  bool is_configured = false;  // in a named style by the operator, who may set what is locked
 };
 
 /// The style set by a query: settings in the order (layer, parameter), each at most once. Named
@@ -194,6 +195,8 @@ class StyleQuery {
   /// for an unknown name.
   using FindTable = std::function<std::shared_ptr<const ValueTable>(const std::string& name)>;
   StyleQuery with_tables(const FindTable& find) &&;
+  /// The same as a style that the operator has configured.
+  StyleQuery configured() &&;
   /// The settings as query pairs, not percent-encoded.
   std::vector<QueryPair> pairs() const;
   /// The canonical query string: equal styles that are written differently give the same text.

@@ -72,6 +72,7 @@ class LayerSettings {
 
 std::optional<Problem> find_locked(const StyleQuery& query, const LayerConfig& config) {
   for (const StyleSetting& setting : query.settings()) {
+    if (setting.is_configured) continue;
     if (!setting.layer.empty() && setting.layer != config.name) continue;
     if (std::ranges::find(config.locked, setting.parameter) == config.locked.end()) continue;
     const std::string name(style_parameter(setting.parameter).name);

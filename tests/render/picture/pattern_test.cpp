@@ -132,9 +132,9 @@ TEST(PatternTest, NeighbouringTilesJoin) {
 
 // The sides of windows are rounded to cells, so that their pixels are not all of the same size.
 TEST(PatternTest, NeighbouringWindowsOfAnySizeOfPixelsJoin) {
-  constexpr double kPixel = 1217.748;  // in cells: zoom 12.75
+  constexpr double kCellsOfPixel = 1217.748;  // in cells: zoom 12.75
   const auto window = [](int column, int row) {
-    const auto side = [](int i) { return std::llround(i * 256 * kPixel); };
+    const auto side = [](int i) { return std::llround(i * 256 * kCellsOfPixel); };
     View view;
     view.width = view.height = 256;
     view.origin_x = kGridMin + side(6000 + column);

@@ -199,6 +199,19 @@ TEST_F(LayerStyleTest, LockedParametersCannotBeSetForTheLayer) {
   EXPECT_EQ(style("lakes.fill=red&stroke=red").paints[0].fill, kLime);
 }
 
+TEST_F(LayerStyleTest, StylesOfTheOperatorMaySetLockedParameters) {
+  served_.config.locked = {ParameterId::fill};
+  const StyleBook book({{"night", testing::style_of("fill=navy")}});
+  const std::vector<std::string> layers{"towns"};
+  const auto complete = [&](std::vector<QueryPair> query) {
+    return complete_style(*book.read(std::move(query))->style_for(layers), served_.config);
+  };
+  const auto night = complete({{"style", "night"}});
+  ASSERT_TRUE(night);
+  EXPECT_EQ(std::get<Rgba>(*night->find("towns", ParameterId::fill)), *parse_colour("navy"));
+  EXPECT_FALSE(complete({{"style", "night"}, {"fill", "red"}}));
+}
+
 TEST_F(LayerStyleTest, EqualDrawingHasOneKey) {
   const std::string key = style("").key();
   EXPECT_EQ(style("fill=lime&opacity=1&stroke-linejoin=miter").key(), key);
