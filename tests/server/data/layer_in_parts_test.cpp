@@ -235,8 +235,7 @@ constexpr const char* kExactQueries[] = {
     "color-by=kind&classes=house:f00,pond:00f,roof:0f0,other:888",
     "filter=number%20%3C%209&fill-opacity=0.5&stroke=000",
     "small=drop&pattern=hatch&ids=107,120,333,700&highlight=120,500",
-    "small=drop&fill=none&stroke=black&stroke-width=4&highlight-fill=none&highlight-stroke=red&"
-    "highlight=107,120,333,500,700",
+    "small=drop&fill=none&stroke=black&highlight-fill=none&highlight-stroke=red&highlight=107,500",
 };
 
 class LayerInParts : public ::testing::TestWithParam<std::uint32_t> {
