@@ -1,7 +1,7 @@
 // The current style in a short form for addresses: its name, or the id under which the server stores it.
 
 import { over } from "./named_styles.js";
-import { divide_shared, over_named } from "./tile_query.js";
+import { divide_shared, over_named, taken_by, takes } from "./tile_query.js";
 
 // The selection is not part of an exported map.
 const SELECTION = ["highlight", "highlight-fill", "highlight-stroke"];
@@ -21,8 +21,8 @@ export function shared_style(drawn, { layers, shared, named }) {
   const is_changed = rest.size > 0 || parts.styled.some(({ style }) => new Map(style).size > 0);
   return {
     name,
-    document: is_changed ? document_of(parts.styled, rest, named) : null,
-    ...divide_shared(over_named(plain, shared, named), layers, shared),
+    document: is_changed ? without_locked(document_of(parts.styled, rest, named), plain, layers) : null,
+    ...divide_shared(over_named(plain, layers, shared, named), layers, shared),
   };
 }
 
@@ -38,6 +38,20 @@ function document_of(styled, shared, named) {
     if (own.size) layers[name] = Object.fromEntries(own);
   }
   return { ...of_all, ...Object.fromEntries(shared), layers };
+}
+
+/** What layers have locked can be set by the named style, but not by one that is posted. */
+function without_locked({ layers: of_layers, ...of_all }, drawn, catalog) {
+  const known = drawn.map(({ name }) => catalog.find((layer) => layer.name === name));
+  const is_for_all = ([name]) => known.every((layer) => takes(layer, name));
+  const of_some = Object.entries(of_all).filter((entry) => !is_for_all(entry));
+  const layers = { ...of_layers };
+  for (const layer of known) {
+    const own = taken_by(layer, [...of_some, ...Object.entries(layers[layer.name] ?? {})]);
+    if (own.length) layers[layer.name] = Object.fromEntries(own);
+    else delete layers[layer.name];
+  }
+  return { ...Object.fromEntries(Object.entries(of_all).filter(is_for_all)), layers };
 }
 
 function without(parameters, names) {

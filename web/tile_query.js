@@ -42,12 +42,13 @@ export function divide_shared(layers, catalog, shared) {
 }
 
 /**
- * Sets the shared parameters individually for those `layers` for which the named style sets them, because
- * unprefixed ones do not override these.
+ * Sets the shared parameters individually for those `layers` that take them and for which the named style
+ * sets them, because unprefixed ones do not override these.
  */
-export function over_named(layers, shared, { layers: of_layers } = {}) {
+export function over_named(layers, catalog, shared, { layers: of_layers } = {}) {
   return layers.map((layer) => {
-    const own = [...shared].filter(([name]) => SHARED_PARAMETERS.includes(name) &&
+    const known = catalog.find(({ name }) => name === layer.name);
+    const own = taken_by(known, shared).filter(([name]) => SHARED_PARAMETERS.includes(name) &&
       Object.hasOwn(of_layers?.[layer.name] ?? {}, name) && !new Map(layer.style).has(name));
     return own.length ? { ...layer, style: new Map([...layer.style, ...own]) } : layer;
   });

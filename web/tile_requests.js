@@ -23,7 +23,7 @@ export function tile_requests(drawn, settings) {
     if (group.length) requests.push(with_parts(group, settings, requests.length === 0));
     group = [];
   };
-  for (const layer of over_named(drawn, settings.shared, settings.named)) {
+  for (const layer of over_named(drawn, settings.layers, settings.shared, settings.named)) {
     if (group.length && !fits([...group, layer], settings)) close();
     group.push(layer);
   }

@@ -71,7 +71,9 @@ void RegionBorders::assign(const TrapezoidalGraph& graph, const MergePlan* plan)
   stamp_ = 0;
   may_have_junction_.assign(moments_.size(), 0);
   known_sizes_.clear();
-  for (const AreaMoments& moments : moments_) known_sizes_.push_back(loop_size_of(moments.area));
+  for (std::size_t r = 0; r < moments_.size() && plan_ != nullptr; ++r) {
+    known_sizes_.push_back(size_of(RegionId(r)));
+  }
   first_end_.assign(graph.vertices().size() + 1, 0);
   for (std::size_t i = 0; i < graph.corners().size(); ++i) {
     const Corner& corner = graph.corner(CornerId(i));
@@ -371,10 +373,15 @@ RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   return united;
 }
 
+/// The area of the unbounded region is negative.
+LoopSize RegionBorders::size_of(RegionId region) const {
+  return loop_size_of(std::max(moments_[region].area, 0.0));
+}
+
 /// A block that grows is walked around only now and then: when its extent has grown by a quarter.
 void RegionBorders::note_block(RegionId block) {
   constexpr int kSteps = 3;
-  block_size_ = loop_size_of(moments_[block].area);
+  block_size_ = size_of(block);
   if (known_sizes_[block] + kSteps > *block_size_) return;
   known_sizes_[block] = *block_size_;
   collect_arcs(block);
@@ -422,12 +429,12 @@ void RegionBorders::dissolve(RegionId region, FaceId taker, EditLog& log, United
   }
   std::sort(takers.begin(), takers.end());
   takers.erase(std::unique(takers.begin(), takers.end()), takers.end());
-  // Edges of this region, whose face has changed, are told the size of a block.
-  if (!takers.empty()) known_sizes_[region] = kLoopSizes - 1;
-  for (const RegionId other : takers) {
-    known_sizes_[region] = std::min(known_sizes_[region], known_sizes_[other]);
-    unite(region, other);
+  if (plan_ != nullptr && !takers.empty()) {
+    // The edges of this region, whose face has changed, are told the size of a block.
+    const auto known = [this](RegionId taker) { return known_sizes_[taker]; };
+    known_sizes_[region] = known(std::ranges::min(takers, {}, known));
   }
+  for (const RegionId other : takers) unite(region, other);
   faces_[region] = taker;
   std::sort(junctions.begin(), junctions.end());
   junctions.erase(std::unique(junctions.begin(), junctions.end()), junctions.end());

@@ -156,6 +156,7 @@ class RegionBorders {
   void dissolve(RegionId region, FaceId taker, EditLog& log, United& united);
   Side side_of(EdgeId edge, RegionId region);
   void measure_regions(const Regions& regions);
+  LoopSize size_of(RegionId region) const;
   void note_block(RegionId block);
   void note_taken(RegionId region, FaceId face, FaceId taker);
   void note_pieces(RegionId region, FaceId face, FaceId taker);
@@ -174,7 +175,8 @@ class RegionBorders {
   Table<RegionId, AreaMoments> moments_;  // of the original regions
   Table<RegionId, List> lists_;
   Table<RegionId, std::uint8_t> may_have_junction_;
-  Table<RegionId, LoopSize> known_sizes_;  // of the loop, as known to all edges of the region
+  // With a plan: the size of the loop, as known to all edges of the region.
+  Table<RegionId, LoopSize> known_sizes_;
   std::vector<Seed> seeds_;
   RegionId unbounded_;
   std::vector<CornerId> ends_;                // of arcs, in order of their vertices

@@ -86,6 +86,14 @@ test("a parameter of all layers also holds where a named style sets it for one o
   assert.equal(query, "?layer1.simplify=4&style=night&simplify=4");
   const { styled } = shared_style(drawn(known), settings(known, { shared, named }));
   assert.deepEqual(styled.map(({ style }) => [...style]), [[], [["simplify", "4"]]]);
+  const locked = [known[0], { ...known[1], locked: ["simplify"] }];
+  assert.equal(tile_requests(drawn(locked), settings(locked, { shared, named }))[0].query,
+    "?layer0.simplify=4&style=night");
+  // What is posted is not a style of the operator.
+  const { document } = shared_style(drawn(locked),
+    settings(locked, { shared, named: { ...named, small: "keep" } }));
+  assert.deepEqual(document,
+    { small: "keep", layers: { layer0: { simplify: "4" }, layer1: { fill: "red" } } });
 });
 
 test("no layers are no requests", () => {
