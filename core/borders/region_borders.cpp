@@ -431,7 +431,7 @@ void RegionBorders::dissolve(RegionId region, FaceId taker, EditLog& log, United
   takers.erase(std::unique(takers.begin(), takers.end()), takers.end());
   if (plan_ != nullptr && !takers.empty()) {
     // The edges of this region, whose face has changed, are told the size of a block.
-    const auto known = [this](RegionId taker) { return known_sizes_[taker]; };
+    const auto known = [this](RegionId other) { return known_sizes_[other]; };
     known_sizes_[region] = known(std::ranges::min(takers, {}, known));
   }
   for (const RegionId other : takers) unite(region, other);
