@@ -67,6 +67,14 @@ double share_of_tables(const SiteOptions& options) {
   return std::max(static_cast<double>(options.posted_values) / 2, 1.0);
 }
 
+/// How long the client has to wait until it gets so many tokens of a limit for one address. Trusted
+/// proxies do not wait.
+std::optional<std::chrono::duration<double>> pause_of(const HttpRequest& request, RateLimit& limit,
+                                                      double tokens) {
+  if (request.is_of_proxy) return std::nullopt;
+  return limit.take(limited_address(request.client), RateLimit::Clock::now(), tokens);
+}
+
 Problem too_large_style(std::size_t length, const SiteOptions& options) {
   return {403, fmt::format("This style has {} bytes, written as a query: more than one address may "
                            "post here. An eighth of the {} MB for styles is for each.",
@@ -489,10 +497,7 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
     if (options_.posted_styles > 0 && memory > share_of_styles(options_)) {
       return problem_response(too_large_style(query.size(), options_));
     }
-    const auto pause = request.is_of_proxy ? std::nullopt
-                                           : post_limit_->take(limited_address(request.client),
-                                                               RateLimit::Clock::now(), memory);
-    if (pause) {
+    if (const auto pause = pause_of(request, *post_limit_, memory)) {
       return problem_response({429, "One address cannot post so many styles. Try again."}, *pause);
     }
   }
@@ -536,11 +541,7 @@ void Site::handle_posted_values(const Target& target, const HttpRequest& request
   // However short it is, the table is joined to whole layers.
   if (auto refusal = find_impatience(request, kDocumentCost)) return respond(*std::move(refusal));
   const auto bytes = static_cast<double>(request.body.size());
-  const auto address = limited_address(request.client);
-  const auto pause = request.is_of_proxy
-                         ? std::nullopt
-                         : values_limit_->take(address, RateLimit::Clock::now(), bytes);
-  if (pause) {
+  if (const auto pause = pause_of(request, *values_limit_, bytes)) {
     return respond(
         problem_response({429, "One address cannot post so many tables. Try again."}, *pause));
   }
@@ -667,15 +668,12 @@ void Site::handle_document(const Documents& documents, const Target& target,
 
 std::optional<HttpResponse> Site::find_impatience(const HttpRequest& request,
                                                   std::uint64_t cost) const {
-  if (request.is_of_proxy) return std::nullopt;
-  const ClientAddress address = limited_address(request.client);
-  const auto now = RateLimit::Clock::now();
-  if (const auto pause = draw_limit_->take(address, now)) {
+  if (const auto pause = pause_of(request, *draw_limit_, 1)) {
     return problem_response(
         {429, "One address cannot request so many new tiles at once. Try again."}, *pause);
   }
   if (cost <= defaults::kOrdinaryTile) return std::nullopt;
-  if (const auto pause = cost_limit_->take(address, now, static_cast<double>(cost))) {
+  if (const auto pause = pause_of(request, *cost_limit_, static_cast<double>(cost))) {
     return problem_response({429, "One address cannot request so many expensive tiles. Try again."},
                             *pause);
   }
