@@ -47,9 +47,10 @@ struct Amounts {
 /// others is cut by all of them, so the number of parts grows with the square of their number. The
 /// counts are those of the layer with the topology test; the layer without it has no table of
 /// overlaps.
-std::uint64_t cost_of_cuts(const Amounts& amounts, const LayerStyle& style) {
+std::uint64_t cost_of_cuts(const Amounts& amounts, const LayerStyle& style, const View& view) {
   const std::uint64_t trapezoids = amounts.trapezoids;
-  const std::uint64_t pairs = (is_plain(style) ? amounts.pairs_along : amounts.pairs) / 2;
+  const bool is_along_only = is_plain(style) && has_fine_pixels(view);
+  const std::uint64_t pairs = (is_along_only ? amounts.pairs_along : amounts.pairs) / 2;
   if (pairs == 0) return 0;
   const std::uint64_t features = amounts.features;
   const std::uint64_t cost = trapezoids + trapezoids * pairs / features;
@@ -125,7 +126,7 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
   const std::uint64_t shapes = trapezoids + amounts.grains;
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
   std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
-  cost += cost_of_cuts(amounts, paint.style);
+  cost += cost_of_cuts(amounts, paint.style, view);
   if (view.projection == Projection::plate_carree) cost += shapes * kSidesPerProjectedTrapezoid;
   if (paint.style.smooth > 0) cost += trapezoids * kSidesPerRoundedTrapezoid;
   if (paint.style.grow > 0) {

@@ -239,6 +239,10 @@ bool is_plain(const LayerStyle& style) {
   return style.classing.is_plain() && style.paints[0].fill.a == 255 && style.stroke.width <= 0;
 }
 
+bool has_fine_pixels(const View& view) {
+  return view.longer_side() <= FeatureOverlap::kAlong;
+}
+
 bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
                           std::span<const DrawnPiece> pieces, DrawingTools& tools) {
   paint_ = &paint;
@@ -515,10 +519,9 @@ bool LayerDrawing::is_raised(std::uint8_t number) const {
 bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Selection& selection,
                               DrawingTools& tools) {
   if (layer_->overlaps().empty()) return false;
-  const bool is_fine = view_.longer_side() <= FeatureOverlap::kAlong;
-  tools.stack.begin(
-      layer_->overlaps(), layer_->mesh(),
-      {epsilon_of_level(selection.pixel_level), has_lines(), is_plain(style()), is_fine});
+  tools.stack.begin(layer_->overlaps(), layer_->mesh(),
+                    {epsilon_of_level(selection.pixel_level), has_lines(), is_plain(style()),
+                     has_fine_pixels(view_)});
   const auto paint_of = [&](std::uint32_t row) {
     const std::uint8_t number = number_of(classes, row);
     const Rgba fill = style().paints[number].fill;

@@ -83,6 +83,10 @@ GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selectio
 /// of overlapping features does not matter.
 bool is_plain(const LayerStyle& style);
 
+/// Whether pixels are so small that, in plain styles, only pairs of overlapping features whose
+/// boundaries run along each other are cut; see FeatureStack::Options.
+bool has_fine_pixels(const View& view);
+
 class LayerDrawing {
  public:
   /// Selects what to draw of the world inside the view; the drawing copies the view. For other
