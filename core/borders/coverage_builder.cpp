@@ -14,6 +14,7 @@
 #include "core/borders/border_lengths.h"
 #include "core/borders/dividing_edges.h"
 #include "core/borders/merging.h"
+#include "core/borders/regions.h"
 #include "core/borders/set_map.h"
 #include "core/grid/web_mercator.h"
 
@@ -206,48 +207,59 @@ void leave_out_overlaps(const TrapezoidalGraph& g, const SetMap& map, double mos
             outcome);
 }
 
-/// The faces of a subdivision by sets.
+/// The faces beside the edges of a subdivision by sets.
 class SetFaces {
  public:
-  /// The faces of the uppermost features of sets, ignoring the features left out, which are in
-  /// ascending order.
-  SetFaces(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
+  /// The faces of the uppermost features, ignoring the features left out, which are in ascending
+  /// order. The graph and the sets must outlive it.
+  SetFaces(const TrapezoidalGraph& g, const FeatureSets& sets,
+           const std::vector<std::uint32_t>& left_out)
+      : g_(g), sets_(sets) {
     face_of_.reserve(sets.size());
     for (std::uint32_t i = 0; i < sets.size(); ++i) {
       face_of_.push_back(uppermost_of(sets[i], left_out));
     }
   }
 
-  /// Gives wide places of several features faces of their own. `sets` and `left_out` are those of
-  /// the constructor.
-  void tell_apart(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out,
-                  const TrapezoidalGraph& g, double narrowest, FaceFeatures& faces) {
-    collect_places(sets, left_out);
-    if (places_.empty()) return;
-    measure(g);
-    for (Place& place : places_) {
-      const double width = place.border > 0 ? 2 * place.area / place.border : 0;
-      if (width > narrowest) place.face = faces.add(std::move(place.features));
+  /// Gives wide places of several features faces of their own: one for all places of the same
+  /// features. `left_out` is that of the constructor.
+  void tell_apart(const std::vector<std::uint32_t>& left_out, double narrowest,
+                  FaceFeatures& faces) {
+    std::vector<std::vector<std::uint32_t>> covers = find_covers(left_out);
+    if (covers.empty()) return;
+    regions_.emplace(g_);
+    join_regions();
+    const std::vector<bool> is_wide = find_wide(narrowest);
+    std::vector<bool> has_face(covers.size(), false);
+    for (std::size_t i = 0; i < is_wide.size(); ++i) {
+      if (is_wide[i]) has_face[cover_of(RegionId(i))] = true;
     }
-    for (std::size_t set = 0; set < face_of_.size(); ++set) {
-      if (place_of_[set] == kNone) continue;
-      const FaceId face = places_[place_of_[set]].face;
-      if (face != kOutside) face_of_[set] = face;
+    std::vector<FaceId> face_of_cover(covers.size(), kOutside);
+    for (std::size_t i = 0; i < covers.size(); ++i) {
+      if (has_face[i]) face_of_cover[i] = faces.add(std::move(covers[i]));
+    }
+    shared_face_.reserve(is_wide.size());
+    for (std::size_t i = 0; i < is_wide.size(); ++i) {
+      const bool is_shared = is_wide[place_of_[RegionId(i)].value];
+      shared_face_.push_back(is_shared ? face_of_cover[cover_of(RegionId(i))] : kOutside);
     }
   }
 
-  FaceId operator[](FaceId set) const { return face_of_[set]; }
+  FaceId beside(EdgeId e, Side s) const {
+    if (shared_face_.size() > 0) {
+      const FaceId shared = shared_face_[regions_->beside[e][s]];
+      if (shared != kOutside) return shared;
+    }
+    return face_of_[g_.edge(e).face[s]];
+  }
+  /// Whether only features left out are there.
+  bool has_only_left_out(EdgeId e, Side s) const {
+    const FaceId set = g_.edge(e).face[s];
+    return face_of_[set] == kOutside && !sets_[set].empty();
+  }
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
-
-  // The area covered by the same features.
-  struct Place {
-    std::vector<std::uint32_t> features;
-    double area = 0;    // cells squared
-    double border = 0;  // its length
-    FaceId face = kOutside;
-  };
 
   static FaceId uppermost_of(const std::vector<std::uint32_t>& set,
                              const std::vector<std::uint32_t>& left_out) {
@@ -258,41 +270,90 @@ class SetFaces {
     return uppermost == set.rend() ? kOutside : *uppermost + 1;
   }
 
-  void collect_places(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
+  /// The sets of several features without those left out, and which of these each set is.
+  std::vector<std::vector<std::uint32_t>> find_covers(const std::vector<std::uint32_t>& left_out) {
+    std::vector<std::vector<std::uint32_t>> covers;
     std::map<std::vector<std::uint32_t>, std::uint32_t> numbers;
-    place_of_.assign(sets.size(), kNone);
-    for (std::uint32_t i = 0; i < sets.size(); ++i) {
-      if (sets[i].size() < 2) continue;
+    cover_of_set_.assign(sets_.size(), kNone);
+    for (std::uint32_t i = 0; i < sets_.size(); ++i) {
+      if (sets_[i].size() < 2) continue;
       std::vector<std::uint32_t> set;
-      std::ranges::set_difference(sets[i], left_out, std::back_inserter(set));
+      std::ranges::set_difference(sets_[i], left_out, std::back_inserter(set));
       if (set.size() < 2) continue;
-      const auto [known, is_new] = numbers.try_emplace(std::move(set), places_.size());
-      place_of_[i] = known->second;
-      if (is_new) places_.push_back({known->first});
+      const auto [known, is_new] = numbers.try_emplace(std::move(set), covers.size());
+      cover_of_set_[i] = known->second;
+      if (is_new) covers.push_back(known->first);
+    }
+    return covers;
+  }
+
+  std::uint32_t cover_of(RegionId region) const { return cover_of_set_[regions_->face[region]]; }
+
+  template <typename Visit>
+  void for_each_edge_between_regions(const Visit& visit) const {
+    for (std::size_t i = 0; i < g_.edges().size(); ++i) {
+      const EdgeId e(i);
+      if (g_.is_frame(e)) continue;
+      const auto [left, right] = regions_->beside[e];
+      if (left != right) visit(g_.edge(e), left, right);
     }
   }
 
-  void measure(const TrapezoidalGraph& g) {
-    for (std::size_t i = 0; i < g.edges().size(); ++i) {
-      if (g.is_frame(EdgeId(i))) continue;
-      const Edge& edge = g.edge(EdgeId(i));
-      const std::uint32_t left = place_of_[edge.face[kLeft]];
-      const std::uint32_t right = place_of_[edge.face[kRight]];
-      if (left == right) continue;
-      const double strip = static_cast<double>(doubled_strip(g, edge)) / 2;
-      const double length = length_of(g, edge);
-      if (left != kNone) add(strip, length, places_[left]);
-      if (right != kNone) add(-strip, length, places_[right]);
-    }
+  /// Joins adjacent regions with the same cover, between which only features left out end.
+  void join_regions() {
+    for (std::size_t i = 0; i < regions_->face.size(); ++i) place_of_.push_back(RegionId(i));
+    for_each_edge_between_regions([this](const Edge&, RegionId left, RegionId right) {
+      if (cover_of(left) == kNone || cover_of(left) != cover_of(right)) return;
+      left = find(left);
+      right = find(right);
+      place_of_[std::max(left, right)] = std::min(left, right);
+    });
+    for (std::size_t i = 0; i < place_of_.size(); ++i) find(RegionId(i));
   }
-  static void add(double strip, double length, Place& place) {
-    place.area += strip;
-    place.border += length;
+  RegionId find(RegionId region) {
+    RegionId first = region;
+    while (place_of_[first] != first) first = place_of_[first];
+    while (region != first) region = std::exchange(place_of_[region], first);
+    return first;
   }
 
-  std::vector<FaceId> face_of_;          // by set
-  std::vector<std::uint32_t> place_of_;  // by set
-  std::vector<Place> places_;
+  /// By the first region of a place with a cover: whether its mean width is greater than that.
+  std::vector<bool> find_wide(double narrowest) const {
+    struct Place {
+      double area = 0;    // cells squared
+      double border = 0;  // its length
+    };
+    std::vector<Place> places(place_of_.size());
+    for_each_edge_between_regions([&](const Edge& edge, RegionId left, RegionId right) {
+      if (place_of_[left] == place_of_[right]) return;
+      const bool is_left = cover_of(left) != kNone;
+      const bool is_right = cover_of(right) != kNone;
+      if (!is_left && !is_right) return;
+      const double strip = static_cast<double>(doubled_strip(g_, edge)) / 2;
+      const double length = length_of(g_, edge);
+      const auto add = [&](RegionId region, double area) {
+        Place& place = places[place_of_[region].value];
+        place.area += area;
+        place.border += length;
+      };
+      if (is_left) add(left, strip);
+      if (is_right) add(right, -strip);
+    });
+    std::vector<bool> is_wide;
+    is_wide.reserve(places.size());
+    for (const Place& place : places) {
+      is_wide.push_back(place.border > 0 && 2 * place.area / place.border > narrowest);
+    }
+    return is_wide;
+  }
+
+  const TrapezoidalGraph& g_;
+  const FeatureSets& sets_;
+  std::vector<FaceId> face_of_;              // by set
+  std::vector<std::uint32_t> cover_of_set_;  // kNone: at most one feature
+  std::optional<Regions> regions_;           // if any place has several features
+  Table<RegionId, RegionId> place_of_;       // leads to the first region of the place
+  Table<RegionId, FaceId> shared_face_;      // of wide places; kOutside elsewhere
 };
 
 /// Whether so many features overlap that a graph with trapezoids for each of them would be much
@@ -308,9 +369,8 @@ bool is_crowded(const TrapezoidalGraph& g, const SetFaces& faces, const FaceFeat
   std::size_t sides = 0;  // about as many as trapezoids
   for (std::size_t i = 0; i < g.edges().size(); ++i) {
     if (g.is_frame(EdgeId(i))) continue;
-    const Edge& edge = g.edge(EdgeId(i));
-    const FaceId left = faces[edge.face[kLeft]];
-    const FaceId right = faces[edge.face[kRight]];
+    const FaceId left = faces.beside(EdgeId(i), kLeft);
+    const FaceId right = faces.beside(EdgeId(i), kRight);
     if (left != right) sides += features.of(left).size() + features.of(right).size();
   }
   return sides > kAlways + kMostPerVertex * vertices;
@@ -336,9 +396,9 @@ std::optional<SetFaces> choose_faces(const TrapezoidalGraph& g, const SetMap& ma
     leave_out_overlaps(g, map, most, outcome);
     if (features.size() < outcome.apart.size() + least) return std::nullopt;
     outcome.faces = FaceFeatures::in_order(features.size());
-    SetFaces faces(map.sets(), outcome.apart);
+    SetFaces faces(g, map.sets(), outcome.apart);
     if (std::isfinite(tolerance.narrowest_overlap)) {
-      faces.tell_apart(map.sets(), outcome.apart, g, tolerance.narrowest_overlap, outcome.faces);
+      faces.tell_apart(outcome.apart, tolerance.narrowest_overlap, outcome.faces);
     }
     const std::size_t vertices = count_vertices(features, outcome.apart);
     if (!is_crowded(g, faces, outcome.faces, vertices)) return faces;
@@ -349,16 +409,15 @@ std::optional<SetFaces> choose_faces(const TrapezoidalGraph& g, const SetMap& ma
 }
 
 /// Places that only features left out cover get the face `left_out`, which may be kOutside.
-Sides sides_of(const TrapezoidalGraph& g, const SetFaces& faces, const FeatureSets& sets,
-               FaceId left_out, std::size_t edges) {
-  const auto face_of = [&](FaceId set) {
-    return faces[set] == kOutside && !sets[set].empty() ? left_out : faces[set];
+Sides sides_of(const SetFaces& faces, FaceId left_out, std::size_t edges) {
+  const auto face_beside = [&](EdgeId e, Side s) {
+    return faces.has_only_left_out(e, s) ? left_out : faces.beside(e, s);
   };
   Sides sides;
   sides.reserve(edges);
-  for (std::size_t e = 0; e < edges; ++e) {
-    const Edge& edge = g.edge(EdgeId(e));
-    sides.emplace_back(face_of(edge.face[kLeft]), face_of(edge.face[kRight]));
+  for (std::size_t i = 0; i < edges; ++i) {
+    const EdgeId e(i);
+    sides.emplace_back(face_beside(e, kLeft), face_beside(e, kRight));
   }
   return sides;
 }
@@ -520,7 +579,7 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   const bool fills_gaps = tolerance.widest_gap > 0;
   const FaceId left_out =
       fills_gaps ? static_cast<FaceId>(outcome.faces.face_count() + 1) : kOutside;
-  Sides sides = sides_of(graph, *faces, map.sets(), left_out, boundary_.edges.size());
+  Sides sides = sides_of(*faces, left_out, boundary_.edges.size());
   if (!keep_what_divides(sides, boundary_, trapezoidation_, graph, threads)) return outcome;
   if (fills_gaps) {
     outcome.filled = fill_gaps(graph, tolerance.widest_gap, outcome.faces, left_out, sides);

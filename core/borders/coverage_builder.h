@@ -59,8 +59,8 @@ struct CoverageTolerance {
   /// edges for each vertex of a feature. Features that do not overlap have one.
   double most_overlap_in_crowd = 0;
   double widest_gap = 0;  // metres on the ground
-  /// Places covered by the same features are faces of their own if their mean width (area over half
-  /// of the border) is greater than this, in cells.
+  /// Connected places covered by the same features are faces of their own if their mean width (area
+  /// over half of the border) is greater than this, in cells.
   double narrowest_overlap = std::numeric_limits<double>::infinity();
 };
 

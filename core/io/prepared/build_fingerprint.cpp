@@ -20,7 +20,7 @@ namespace {
 // Must be incremented when different polygons or attributes are read from the same source, when the
 // same content gets another revision, or when a change affects only layers that are unlike the
 // probe, such as those with much dust.
-constexpr std::uint64_t kReadingVersion = 10;
+constexpr std::uint64_t kReadingVersion = 11;
 
 constexpr int kShapes = 12;
 constexpr int kVertices = 9;

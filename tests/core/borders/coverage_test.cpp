@@ -281,6 +281,35 @@ TEST(CoverageInCommon, APlaceOfTwoFeaturesIsAFaceIfItIsWide) {
   EXPECT_EQ(narrow.doubled_area(2), 200);
 }
 
+TEST(CoverageInCommon, AWidePlaceIsAFaceHoweverManyNarrowOnesThereAre) {
+  // Along a border that is 400 cells long, the second feature is over the first one by one cell;
+  // farther up they overlap by 20 x 20 cells.
+  const Texts texts{"0 0, 101 0, 101 400, 100 400, 100 420, 120 420, 120 440, 0 440",
+                    "100 0, 200 0, 200 440, 100 440, 100 420, 105 420, 105 400, 100 400"};
+  const BuiltCoverage c(features_from_text(texts), 5);
+  ASSERT_EQ(c.outcome.overlaps.size(), 1u);
+  EXPECT_DOUBLE_EQ(c.outcome.overlaps[0].area, 400 + 400);
+  ASSERT_EQ(c.outcome.faces.face_count(), 3u);
+  EXPECT_THAT(c.outcome.faces.of(3), ::testing::ElementsAre(0, 1));
+  EXPECT_EQ(c.doubled_area(3), 2 * 400);
+  EXPECT_EQ(c.doubled_area(1), 2 * (440 * 100));
+  const BuiltCoverage narrow(features_from_text(texts), 10.1);
+  EXPECT_EQ(narrow.outcome.faces.face_count(), 2u);
+}
+
+TEST(CoverageInCommon, AFeatureLeftOutDoesNotDivideAPlace) {
+  // Two features overlap by 10 x 100 cells. The third one overlaps both, up to their middle.
+  const Texts texts{"0 0, 110 0, 110 100, 0 100", "100 0, 200 0, 200 100, 100 100",
+                    "40 0, 160 0, 160 50, 40 50"};
+  TrapezoidalGraph graph;
+  const std::vector<Rings> features = features_from_text(texts);
+  const CoverageOutcome outcome = CoverageBuilder().build(
+      pointers_to(features), {.most_overlap = 0.2, .narrowest_overlap = 9}, graph);
+  EXPECT_THAT(outcome.apart, ::testing::ElementsAre(2));
+  // The mean width of each half is 500 / 60, of both together 1000 / 110.
+  EXPECT_THAT(outcome.faces.shared(), ::testing::ElementsAre(::testing::ElementsAre(0, 1)));
+}
+
 TEST(CoverageInCommon, AFeatureWithinAnotherIsNotLost) {
   const BuiltCoverage c(features_from_text({"2 2, 8 2, 8 8, 2 8", "0 0, 10 0, 10 10, 0 10"}),
                         kNone);
