@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,6 +32,8 @@ struct DocumentRequest {
   const TileMatrixSets& sets = TileMatrixSets::built_in();
   std::size_t max_layers = kMaxLayersPerTile;  // limit for one picture
   int max_zoom = kMaxZoom;                     // pixels of a picture are not smaller than there
+  /// Completes the style of the query; null: the style that the query names does.
+  std::shared_ptr<const StyleQuery> named = {};
 
   /// The value of the first pair with that name, or null.
   const std::string* find(std::string_view name) const {
@@ -46,6 +49,7 @@ struct DocumentRequest {
                                std::span<const std::string_view> others = {}) const {
     auto styled = styles.read(query);
     if (!styled) return std::move(styled).problem();
+    if (named != nullptr) styled->named = named;
     return styled->style_for(layers, others);
   }
   /// The same for links in the document.

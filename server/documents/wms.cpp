@@ -15,6 +15,7 @@ Result<Document> legend_in(const WmsLegendRequest& asked, const DocumentRequest&
   DocumentRequest legend = request;
   legend.path = {"legend", asked.file};
   legend.query = asked.query;
+  legend.named = asked.named;
   return legend_document(legend);
 }
 

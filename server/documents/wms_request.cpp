@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -129,32 +130,14 @@ bool is_set(std::span<const QueryPair> query, std::string_view name, std::string
   });
 }
 
-/// As StyleQuery::over(): classing parameters are only meaningful together, so that a query that
-/// has one of them replaces all of the style.
-bool overrides(std::span<const QueryPair> query, const StyleParameter& parameter,
-               std::string_view layer) {
-  return std::ranges::any_of(style_parameters(), [&](const StyleParameter& other) {
-    const bool is_alike = other.id == parameter.id ||
-                          (is_classing_parameter(other.id) && is_classing_parameter(parameter.id));
-    return is_alike && is_set(query, other.name, layer);
-  });
-}
-
-/// Adds the settings of a style for one layer, unless the query has them. Settings for the whole
-/// picture come from the first style that has them.
-void add_style_of(const std::string& layer, const StyleQuery& style,
-                  std::vector<QueryPair>& query) {
-  const std::vector<QueryPair> own = query;
-  const StyleQuery of_layer = StyleQuery().over(style, {&layer, 1});
-  for (const StyleSetting& setting : of_layer.settings()) {
-    const StyleParameter& parameter = style_parameter(setting.parameter);
-    if (overrides(own, parameter, layer)) continue;
-    const ParameterValue* value = style.find(layer, setting.parameter);  // own values come first
-    std::string name = parameter.is_per_layer ? fmt::format("{}.{}", layer, parameter.name)
-                                              : std::string(parameter.name);
-    if (std::ranges::find(query, name, &QueryPair::first) != query.end()) continue;
-    query.emplace_back(std::move(name), format_value(*value));
-  }
+/// What a style sets for one layer, unless the query does. All parameters of a query take
+/// precedence over styles, also those for all layers.
+Result<StyleQuery> style_for_layer(const StyleQuery& style, const std::string& layer,
+                                   std::span<const QueryPair> query,
+                                   std::span<const std::string> layers) {
+  const auto own = StyleQuery::parse(query, layers);
+  if (!own) return own.problem();
+  return style.of_layer(layer).without_those_of(*own);
 }
 
 /// The styles of the layers, one for each or none at all, and the additional settings of the query.
@@ -167,15 +150,19 @@ Result<StyleQuery> style_of(std::vector<QueryPair> query, std::span<const std::s
     return ows_problem(400, ows::kStyleNotDefined, "STYLES",
                        "STYLES takes one name for each of LAYERS, or nothing at all.", list);
   }
+  // Settings for the whole picture come from the first style that has them.
+  StyleQuery named;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (is_own_style(names[i])) continue;
     const auto style = styles.find(names[i]);
     if (style == nullptr) return unknown_style("STYLES", names[i]);
-    add_style_of(of_layers[i], *style, query);
+    const auto of_layer = style_for_layer(*style, of_layers[i], query, layers);
+    if (!of_layer) return of_layer.problem();
+    named = named.over(*of_layer, layers);
   }
-  // Resolves posted tables; the query names no style any more.
-  const auto styled = styles.read(std::move(query));
+  auto styled = styles.read(std::move(query));  // which names no style itself
   if (!styled) return styled.problem();
+  styled->named = std::make_shared<const StyleQuery>(std::move(named));
   return styled->style_for(layers);
 }
 
@@ -405,8 +392,13 @@ Result<WmsRequest> legend_of(const KeyValuePairs& pairs, const DocumentRequest& 
   if (const auto& asked = pairs["STYLE"]; asked && !is_own_style(*asked)) {
     const auto style = request.styles.find(*asked);
     if (style == nullptr) return unknown_style("STYLE", *asked);
-    // As in maps, where all parameters of the query take precedence over the style.
-    for (const std::string& layer : *layers) add_style_of(layer, *style, legend.query);
+    StyleQuery named;
+    for (const std::string& layer : *layers) {
+      const auto of_layer = style_for_layer(*style, layer, legend.query, *layers);
+      if (!of_layer) return of_layer.problem();
+      named = named.over(*of_layer, *layers);
+    }
+    legend.named = std::make_shared<const StyleQuery>(std::move(named));
   }
   const int whole = std::clamp(static_cast<int>(std::lround(*scale)), 1, kMaxScale);
   legend.file = fmt::format("{}{}", fmt::join(*layers, ","),

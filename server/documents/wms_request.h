@@ -39,10 +39,11 @@ struct WmsFeatureInfoRequest {
   std::string content_type;
 };
 
-/// /legend/{file} in the style of the query.
+/// /legend/{file} in the style of the query, which `named` completes.
 struct WmsLegendRequest {
   std::string file;
   std::vector<QueryPair> query;
+  std::shared_ptr<const StyleQuery> named = {};  // null: none
 };
 
 using WmsRequest =

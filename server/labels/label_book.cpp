@@ -326,9 +326,11 @@ std::shared_ptr<const LabelImage> LabelBook::image_of(const LabelledLayer& layer
   const LabelStyle& style = *layer.style;
   const std::shared_ptr<const Fonts>& fonts = fonts_for(style);
   std::string text = style.text_of(features, row, *fonts);
+  // A halo without a width must not show at the rims of letters, which cover pixels in part.
+  const Rgba halo_colour = style.halo_width > 0 ? style.halo_colour : kTransparent;
   const std::string key =
       fmt::format("{} {} {} {} {} {} {} {}", style.font, style.size, style.max_width,
-                  style.halo_width, scale, to_hex(style.colour), to_hex(style.halo_colour), text);
+                  style.halo_width, scale, to_hex(style.colour), to_hex(halo_colour), text);
   {
     const std::lock_guard lock(mutex_);
     if (const auto* found = images_.find(key)) return *found;
@@ -347,8 +349,7 @@ std::shared_ptr<const LabelImage> LabelBook::image_of(const LabelledLayer& layer
                           halo * scale, width, height);
   };
   auto image = std::make_shared<const LabelImage>(
-      LabelImage::Look{width, height, style.colour, style.halo_colour, hash.hex()},
-      std::move(draw));
+      LabelImage::Look{width, height, style.colour, halo_colour, hash.hex()}, std::move(draw));
   const std::size_t bytes = key.size() +
                             2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) +
                             sizeof(LabelImage);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -22,25 +23,35 @@ constexpr std::array<std::string_view, 4> kIgnored = {"id", "metadata", "source"
 constexpr int kMaxMembers = 4096;
 constexpr int kMaxDepth = 8;
 
-struct TooMuch {};
+Problem wrong(std::string detail, std::string parameter = {}, std::string takes = {}) {
+  return {400, std::move(detail), std::move(parameter), {}, std::move(takes)};
+}
 
-/// Nothing if it is larger than any style; a discarded value if it is not JSON.
-std::optional<Json> parse_json(std::string_view text) {
+/// The problem is a document that is larger than any style, or that has a member twice: the value
+/// would have only one of them. A discarded value if it is not JSON.
+Result<Json> parse_json(std::string_view text) {
   int members = 0;
-  const auto count = [&members](int depth, Json::parse_event_t event, const Json&) {
-    if (event == Json::parse_event_t::key && ++members > kMaxMembers) throw TooMuch{};
-    if (depth > kMaxDepth) throw TooMuch{};
+  std::vector<std::set<std::string>> names;  // of the members of open objects, the innermost last
+  const auto look = [&](int depth, Json::parse_event_t event, const Json& parsed) {
+    const bool is_key = event == Json::parse_event_t::key;
+    if ((is_key && ++members > kMaxMembers) || depth > kMaxDepth) {
+      throw wrong(
+          fmt::format("A style has at most {} members in all, and nothing nested deeper than {}.",
+                      kMaxMembers, kMaxDepth));
+    }
+    if (event == Json::parse_event_t::object_start) names.emplace_back();
+    if (event == Json::parse_event_t::object_end) names.pop_back();
+    if (is_key && !names.back().insert(parsed.get<std::string>()).second) {
+      const auto name = parsed.get<std::string>();
+      throw wrong(fmt::format("The member {} is given more than once.", name), name, "one value");
+    }
     return true;
   };
   try {
-    return Json::parse(text, count, false);
-  } catch (const TooMuch&) {
-    return std::nullopt;
+    return Json::parse(text, look, false);
+  } catch (const Problem& problem) {
+    return problem;
   }
-}
-
-Problem wrong(std::string detail, std::string parameter = {}, std::string takes = {}) {
-  return {400, std::move(detail), std::move(parameter), {}, std::move(takes)};
 }
 
 std::string class_value_text(std::string_view text) {
@@ -90,7 +101,12 @@ class DocumentReader {
     for (const auto& [key, value] : object.items()) {
       if (auto problem = read_member(key, value, layer)) return problem;
     }
-    return std::nullopt;
+    // In MapLibre, the opacity of the fill is also that of its outline.
+    if (!object.contains("fill-outline-color") || !object.contains("fill-opacity") ||
+        object.contains("stroke-opacity")) {
+      return std::nullopt;
+    }
+    return add("stroke-opacity", object["fill-opacity"], layer);
   }
 
   Result<StyleQuery> finish() const { return StyleQuery::parse(pairs_, layers_); }
@@ -160,13 +176,8 @@ class DocumentReader {
 }  // namespace
 
 Result<StyleQuery> parse_style_document(std::string_view text) {
-  const std::optional<Json> parsed = parse_json(text);
-  if (!parsed) {
-    return wrong(
-        fmt::format("A style has at most {} members in all, and nothing nested deeper than "
-                    "{}.",
-                    kMaxMembers, kMaxDepth));
-  }
+  const Result<Json> parsed = parse_json(text);
+  if (!parsed) return parsed.problem();
   const Json& json = *parsed;
   if (!json.is_object()) {
     return wrong(json.is_discarded() ? "The body is not JSON."

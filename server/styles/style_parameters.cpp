@@ -830,8 +830,17 @@ Result<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
 
 const ParameterValue* StyleQuery::find(std::string_view layer, ParameterId parameter) const {
   const StyleSetting* setting = find_setting(layer, parameter);
-  if (setting == nullptr) setting = find_setting({}, parameter);
+  if (setting == nullptr && !is_excluded(layer, parameter)) setting = find_setting({}, parameter);
   return setting == nullptr ? nullptr : &setting->value;
+}
+
+bool StyleQuery::is_excluded(std::string_view layer, ParameterId parameter) const {
+  if (parameter == ParameterId::classes) {
+    return find_setting(layer, ParameterId::breaks) != nullptr ||
+           find_setting(layer, ParameterId::ramp) != nullptr;
+  }
+  const bool is_of_breaks = parameter == ParameterId::breaks || parameter == ParameterId::ramp;
+  return is_of_breaks && find_setting(layer, ParameterId::classes) != nullptr;
 }
 
 std::optional<ParameterValue> StyleQuery::value_for(std::string_view layer,
@@ -862,6 +871,28 @@ StyleQuery StyleQuery::over(const StyleQuery& style, std::span<const std::string
   }
   std::ranges::sort(both.settings_, {}, order_of);
   return both;
+}
+
+StyleQuery StyleQuery::of_layer(const std::string& layer) const {
+  StyleQuery style;
+  for (const StyleSetting& setting : settings_) {
+    if (!setting.layer.empty() && setting.layer != layer) continue;
+    if (find(layer, setting.parameter) != &setting.value) continue;  // its own comes first
+    style.settings_.push_back(setting);
+    if (style_parameter(setting.parameter).is_per_layer) style.settings_.back().layer = layer;
+  }
+  std::ranges::sort(style.settings_, {}, order_of);
+  return style;
+}
+
+StyleQuery StyleQuery::without_those_of(const StyleQuery& query) const {
+  StyleQuery style = *this;
+  std::erase_if(style.settings_, [&query](const StyleSetting& setting) {
+    StyleSetting for_all = setting;
+    for_all.layer.clear();
+    return query.sets(setting) || query.sets(for_all);
+  });
+  return style;
 }
 
 StyleQuery StyleQuery::with_tables(const FindTable& find) && {

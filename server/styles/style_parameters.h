@@ -181,7 +181,8 @@ class StyleQuery {
                                   std::span<const std::string_view> others = {});
 
   std::span<const StyleSetting> settings() const { return settings_; }
-  /// The value for `layer`: its own setting, else the one for all layers, else null.
+  /// The value for `layer`: its own setting, else the one for all layers, else null. Classes for
+  /// all layers are not for one with breaks or a ramp of its own, nor the other way round.
   const ParameterValue* find(std::string_view layer, ParameterId parameter) const;
   std::optional<ParameterValue> value_for(std::string_view layer, ParameterId parameter) const;
   /// This style for one layer, completed from `defaults`, which are for all layers. Rules that put
@@ -191,6 +192,11 @@ class StyleQuery {
   /// here for all layers does not override one of `style` for a single layer. Rules that put
   /// features into classes are taken as a whole or not at all.
   StyleQuery over(const StyleQuery& style, std::span<const std::string> layers) const;
+  /// What this style sets for `layer`, as settings of that layer alone, and for the whole picture.
+  StyleQuery of_layer(const std::string& layer) const;
+  /// This style without settings for one layer that `query` sets for that layer or for all. Rules
+  /// that put features into classes are taken as a whole or not at all.
+  StyleQuery without_those_of(const StyleQuery& query) const;
   /// The same with the tables that `find` returns for the table names in settings; it returns null
   /// for an unknown name.
   using FindTable = std::function<std::shared_ptr<const ValueTable>(const std::string& name)>;
@@ -204,6 +210,8 @@ class StyleQuery {
 
  private:
   const StyleSetting* find_setting(std::string_view layer, ParameterId parameter) const;
+  /// Whether the layer puts features into classes by a rule of its own that excludes the parameter.
+  bool is_excluded(std::string_view layer, ParameterId parameter) const;
   /// Whether it contains that setting or, if that is one of the rules for classes, any such rule
   /// for that layer.
   bool sets(const StyleSetting& setting) const;

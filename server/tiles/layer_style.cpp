@@ -164,6 +164,7 @@ std::optional<FilterLiteral> read_number(const std::string& text) {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (std::isnan(static_cast<double>(number))) return std::nullopt;  // equals nothing
   return FilterLiteral(number);
 }
 
@@ -321,6 +322,13 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
                                    is_integer ? "an integer" : "a number"),
                        "classes", wanted.value,
                        is_integer ? "integers as values" : "numbers as values"};
+      }
+      if (std::ranges::find(making.style.classing.values, value) !=
+          making.style.classing.values.end()) {
+        return Problem{400,
+                       fmt::format("The classes have the number {} of {} more than once.",
+                                   wanted.value, field.name),
+                       "classes", wanted.value, "each value once"};
       }
     }
     making.style.classing.values.push_back(std::move(value));

@@ -118,6 +118,30 @@ TEST(WmsStyleTest, ParametersOfTheQueryReplaceTheStyleInMapsAndLegends) {
             *sample.get(legend + classes).body);
 }
 
+TEST(WmsStyleTest, StylesOfTheOperatorMaySetLockedParameters) {
+  SiteOptions options;
+  options.styles.emplace("night", testing::style_of("fill=navy"));
+  options.fonts = open_fonts({});
+  testing::SampleSite sample(true, {}, options);
+  const TemporaryFolder folder;
+  std::vector<LayerConfig> layers =
+      layers_of_files({folder.write("rings.geojson", R"({"type": "Polygon", "coordinates":
+      [[[-40, 0.1], [-0.1, 0.1], [-0.1, 39], [-40, 39], [-40, 0.1]]]})")});
+  layers[0].locked = {ParameterId::fill};
+  sample.data().set(Dataset::load(layers));
+  const std::string night = changed(kMap, "STYLES=", "STYLES=night");
+  const auto map = sample.get(night);
+  EXPECT_EQ(map.status, 200) << *map.body;
+  EXPECT_EQ(*map.body, *sample.get("/tiles/rings/3/3/3.png?background=fff&style=night").body);
+  EXPECT_EQ(sample.get(night + "&fill=red").status, 400);
+  const auto info = sample.get(changed(kMapInfo, "STYLES=", "STYLES=night") + "text/plain");
+  EXPECT_EQ(info.status, 200) << *info.body;
+  const std::string legend = "/wms?REQUEST=GetLegendGraphic&FORMAT=application/json&LAYER=rings";
+  EXPECT_EQ(*sample.get(legend + "&STYLE=night").body,
+            *sample.get("/legend/rings.json?style=night").body);
+  EXPECT_EQ(sample.get(legend + "&STYLE=night&fill=red").status, 400);
+}
+
 TEST_F(WmsTest, FinerScreensHaveWiderLines) {
   const auto twice =
       sample_.get("/tiles/rings/3/3/3@2x.png?background=fff&stroke=000&stroke-width=3");

@@ -347,5 +347,16 @@ TEST(LabelRequestsTest, ATileWithALabelIsNeitherFullNorTheSame) {
   EXPECT_NE(plain.header("ETag"), labelled.header("ETag"));
 }
 
+TEST(LabelRequestsTest, AHaloWithoutAWidthHasNoColour) {
+  testing::SampleSite site;
+  const std::string bare = "/tiles/rings/0/0/0.png?label=name&label-overhang=500&label-halo-width=";
+  const HttpResponse red = site.get(bare + "0&label-halo-color=red");
+  const HttpResponse none = site.get(bare + "0&label-halo-color=transparent");
+  EXPECT_EQ(red.status, 200);
+  EXPECT_EQ(*red.body, *none.body);
+  EXPECT_EQ(red.header("ETag"), none.header("ETag"));
+  EXPECT_NE(*red.body, *site.get(bare + "1&label-halo-color=red").body);
+}
+
 }  // namespace
 }  // namespace trapeze

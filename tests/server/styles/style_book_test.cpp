@@ -171,6 +171,26 @@ std::string canonical_document(std::string_view json) {
   return style->canonical_text();
 }
 
+TEST(StyleDocumentTest, TheOpacityOfMapLibreIsAlsoThatOfOutlines) {
+  EXPECT_EQ(
+      canonical_document(
+          R"({"paint": {"fill-color": "red", "fill-opacity": 0.5, "fill-outline-color": "blue"}})"),
+      "fill=ff0000ff&fill-opacity=0.5&stroke=0000ffff&stroke-opacity=0.5");
+  EXPECT_EQ(canonical_document(R"({"fill-opacity": 0.5, "stroke": "blue"})"),
+            "fill-opacity=0.5&stroke=0000ffff");
+}
+
+TEST(StyleDocumentTest, AMemberGivenTwiceIsAProblem) {
+  for (const char* json :
+       {R"({"fill": "red", "fill": "blue"})",
+        R"({"layers": {"a": {"fill": "red", "fill": "red"}}})",
+        R"({"color-by": "A3", "classes": {"FRA": "red", "DEU": "lime", "FRA": "blue"}})"}) {
+    EXPECT_THAT(canonical_document(json), HasSubstr("more than once")) << json;
+  }
+  EXPECT_EQ(canonical_document(R"({"layers": {"a": {"fill": "red"}, "b": {"fill": "red"}}})"),
+            "a.fill=ff0000ff&b.fill=ff0000ff");
+}
+
 TEST(StyleDocumentTest, HasTheParametersByTheirNames) {
   EXPECT_EQ(
       canonical_document(R"({"fill": "#ff0000", "stroke-width": 2, "stroke-dasharray": [4, 2.5]})"),
@@ -186,7 +206,7 @@ TEST(StyleDocumentTest, UnderstandsThePaintOfMapLibre) {
   EXPECT_EQ(canonical_document(R"({"id": "land", "type": "fill", "source": "x", "source-layer": "y",
                           "paint": {"fill-color": "#0f0", "fill-opacity": 0.5,
                                     "fill-outline-color": "black", "fill-antialias": true}})"),
-            "fill=00ff00ff&fill-opacity=0.5&stroke=000000ff");
+            "fill=00ff00ff&fill-opacity=0.5&stroke=000000ff&stroke-opacity=0.5");
 }
 
 TEST(StyleDocumentTest, NothingIsLeftOutInSilence) {

@@ -191,6 +191,27 @@ TEST_F(LayerStyleTest, WhatDoesNotFitTheLayerOrItselfIsAProblem) {
   }
 }
 
+TEST_F(LayerStyleTest, ClassesHaveEachNumberOnceHoweverItIsWritten) {
+  for (const char* query :
+       {"color-by=people&classes=20:red,020:blue", "color-by=height&classes=1.5:red,15e-1:blue",
+        "color-by=height&classes=0:red,-0:blue"}) {
+    EXPECT_THAT(problem(query).detail, HasSubstr("more than once")) << query;
+    EXPECT_EQ(problem(query).parameter, "classes") << query;
+  }
+  EXPECT_THAT(problem("color-by=height&classes=nan:red").detail, HasSubstr("not a number"));
+  EXPECT_EQ(style("color-by=kind&classes=1:red,01:blue").classing.values.size(), 2u);
+}
+
+TEST_F(LayerStyleTest, ALayersOwnClassesExcludeBreaksForAllLayersAndTheOtherWayRound) {
+  const std::string breaks = "color-by=people&breaks=10&ramp=Blues";
+  const std::string classes = "color-by=people&classes=1:red";
+  const std::string own_breaks = "&towns.color-by=people&towns.breaks=10&towns.ramp=Blues";
+  const std::string own_classes = "&towns.color-by=people&towns.classes=1:red";
+  EXPECT_EQ(style(classes + own_breaks).key(), style(breaks).key());
+  EXPECT_EQ(style(breaks + own_classes).key(), style(classes).key());
+  EXPECT_EQ(style("color-by=people&towns.classes=1:red").key(), style(classes).key());
+}
+
 TEST_F(LayerStyleTest, LockedParametersCannotBeSetForTheLayer) {
   served_.config.locked = {ParameterId::fill, ParameterId::filter};
   for (const char* query : {"fill=red", "towns.fill=red", "filter=people=1"}) {
