@@ -39,10 +39,17 @@ report_progress() {
 }
 
 # with_progress NAME LOG COMMAND...: writes the command's output to the log and shows its last step every
-# ten seconds. Returns the command's status.
+# ten seconds. Returns the command's status. If the log cannot be written, because another user has built here,
+# the script ends, so that nobody takes the log of an earlier run for that of this one.
 with_progress() {
   local name=$1 log=$2 status=0
   shift 2
+  { : >"$log"; } 2>/dev/null || {
+    printf '%s: cannot write %s, which belongs to %s\n' "$name" "$log" \
+      "$(stat -c %U "$log" 2>/dev/null || stat -c %U "${log%/*}")" >&2
+    printf '%s: run this script as that user, or make all files here yours by chown\n' "$name" >&2
+    exit 1
+  }
   report_progress "$name" "$log" $$ &
   progress_reporter=$!
   "$@" >"$log" 2>&1 || status=$?

@@ -264,13 +264,18 @@ std::string log_path(const SeedArguments& arguments) {
   return path + ".seeding";
 }
 
+/// The parts do not tell tiles that were drawn from those that an update took from the earlier
+/// archive.
 void make_archive(const std::vector<std::string>& logs, const std::string& output,
-                  const JoinOptions& options) {
+                  const JoinOptions& options, bool is_update) {
   const auto begin = Clock::now();
   const SeedLogs parts(logs);
   join_into_archive(parts, output, options);
-  spdlog::info(fmt::format("{}: {}; put together in {}", output, figures_words(parts.figures()),
-                           duration_words(seconds_since(begin))));
+  const SeedFigures figures = parts.figures();
+  spdlog::info(fmt::format(
+      "{}: {}; put together in {}", output,
+      is_update ? fmt::format("{} tiles", number_words(figures.tiles())) : figures_words(figures),
+      duration_words(seconds_since(begin))));
 }
 
 void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder) {
@@ -336,7 +341,7 @@ int run_seed(const SeedArguments& arguments) {
   if (!arguments.join.empty()) {
     if (arguments.is_dry_run) throw UsageError("--join does not go with --dry-run");
     check_place_of_archive(arguments.output);
-    make_archive(arguments.join, arguments.output, options);
+    make_archive(arguments.join, arguments.output, options, false);
     return 0;
   }
   if (!arguments.is_dry_run && arguments.part.empty()) check_place_of_archive(arguments.output);
@@ -352,7 +357,7 @@ int run_seed(const SeedArguments& arguments) {
   if (arguments.is_dry_run) return tell_estimate(work, seeder, !arguments.update.empty());
   seed_into(arguments, work, seeder);
   if (!arguments.part.empty()) return 0;
-  make_archive({log_path(arguments)}, arguments.output, options);
+  make_archive({log_path(arguments)}, arguments.output, options, !arguments.update.empty());
   std::filesystem::remove(log_path(arguments));
   return 0;
 }
