@@ -52,6 +52,8 @@ bool are_within(std::span<const double> values, double limit) {
 }
 
 constexpr auto kTurn = static_cast<double>(kGridSize);  // around the world, in cells
+constexpr double kTurnDegrees = 360;
+constexpr double kHalfTurnDegrees = 180;
 
 constexpr double kNearSeam = 2e-5;      // degrees: two metres, the precision to which sources round
                                         // 180
@@ -160,6 +162,10 @@ void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
   std::size_t part = 0;
   std::size_t first_of_part = 0;
   for (std::size_t ring = 0; ring < ends_.size(); ++ring) {
+    const bool begins_part = ring == 0 || (part > 0 && ring == part_ends_[part - 1]);
+    if (grid_ != nullptr && begins_part) {
+      note_extent(begin, part < part_ends_.size() ? ends_[part_ends_[part] - 1] : x_.size());
+    }
     append_ring(begin, ends_[ring], feature);
     if (!feature.failure.empty()) return feature.rings.clear();
     begin = ends_[ring];
@@ -301,12 +307,42 @@ void RingReader::cut_source_edges(FeatureRings& feature) {
   }
 }
 
+/// For the grid of another system: from where to where a part extends, in degrees.
+void RingReader::note_extent(std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) {
+    west_ = std::min(west_, x_[i]);
+    east_ = std::max(east_, x_[i]);
+  }
+}
+
+bool RingReader::is_longer_than_world() const {
+  return east_ - west_ > (grid_ != nullptr ? kTurnDegrees + 2 * kNearSeam : kTurn);
+}
+
 void RingReader::append_on_grid(FeatureRings& feature) {
-  if (!grid_->project(ring_, parts_)) {
+  if (!is_longer_than_world()) return append_parts_on_grid(ring_, 0, feature);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Extent extent = extent_of(ring_);
+  for (const double turn : {0.0, -kTurn, kTurn}) {
+    const double shift = turn / kTurn * kTurnDegrees;
+    const bool is_seen =
+        extent.min_x + shift < kHalfTurnDegrees && extent.max_x + shift > -kHalfTurnDegrees;
+    if (!is_seen) continue;
+    clipped_.clear();
+    for (const Position p : ring_) clipped_.push_back({p.x + shift, p.y});
+    clip_ring(clipped_, {-kHalfTurnDegrees, -kInfinity, kHalfTurnDegrees, kInfinity}, scratch_);
+    if (feature.failure.empty()) append_parts_on_grid(clipped_, turn, feature);
+  }
+}
+
+void RingReader::append_parts_on_grid(const PositionRing& ring, double turn,
+                                      FeatureRings& feature) {
+  if (!grid_->project(ring, parts_)) {
     feature.failure = "lies where " + grid_->grid().name + " is not defined";
     return;
   }
   for (const PositionRing& part : parts_) append_snapped(part, feature.rings);
+  turns_.resize(feature.rings.size(), turn);
 }
 
 void RingReader::append_ring(std::size_t begin, std::size_t end, FeatureRings& feature) {
@@ -343,7 +379,7 @@ void RingReader::append_ring(std::size_t begin, std::size_t end, FeatureRings& f
 /// longer than the world: by even-odd, what they cover twice would be left out. The last part is
 /// not ended yet.
 void RingReader::separate_turns(std::size_t first, FeatureRings& feature) const {
-  if (east_ - west_ <= kTurn) return;
+  if (!is_longer_than_world()) return;
   Rings separate;
   for (std::size_t i = 0; i < first; ++i) separate.add(feature.rings[i]);
   for (const double turn : {0.0, -kTurn, kTurn}) {

@@ -70,7 +70,10 @@ class RingReader {
   void to_lonlat(FeatureRings& feature);
   void cut_source_edges(FeatureRings& feature);
   bool map_to_lonlat(std::vector<double>& x, std::vector<double>& y);
+  void note_extent(std::size_t begin, std::size_t end);
+  bool is_longer_than_world() const;
   void append_on_grid(FeatureRings& feature);
+  void append_parts_on_grid(const PositionRing& ring, double turn, FeatureRings& feature);
   void append_ring(std::size_t begin, std::size_t end, FeatureRings& feature);
   void separate_turns(std::size_t first, FeatureRings& feature) const;
   void unwrap_ring(std::size_t begin, std::size_t end);
@@ -98,9 +101,10 @@ class RingReader {
   PositionRing clipped_;
   PositionRing scratch_;
   std::vector<PositionRing> parts_;  // parts of the ring on the grid of another system
-  // Of each ring of the feature: by how many turns around the world it was moved.
+  // Of each ring of the feature: by how many turns around the world it was moved, in cells of Web
+  // Mercator.
   std::vector<double> turns_;
-  double west_ = 0;  // of the current part, in cells
+  double west_ = 0;  // of the current part: in cells, or on the grid of another system in degrees
   double east_ = 0;
 };
 

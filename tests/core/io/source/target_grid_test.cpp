@@ -16,6 +16,8 @@
 
 #include <ogr_geometry.h>
 
+#include "core/borders/part_union.h"
+#include "core/grid/ring_box.h"
 #include "core/io/source/ring_reader.h"
 #include "tests/core/io/source/written_source.h"
 
@@ -102,6 +104,28 @@ TEST(TargetGridTest, EndsWhereThePlaneIsTorn) {
   const auto grid = find_target_grid("EPSG:8858");
   EXPECT_NEAR(grid->west, 90, 0.1);
   EXPECT_NEAR(grid->east, 450, 0.1);
+}
+
+TEST(TargetGridTest, KeepsWhatPolygonsLongerThanTheWorldCoverTwice) {
+  // Around the pole, and a strip across the antimeridian.
+  for (const char* grid : {"EPSG:3995", "EPSG:2193"}) {
+    const bool is_north = std::string(grid) == "EPSG:3995";
+    const double south = is_north ? 65 : -50;
+    const auto area_of = [&](double west, double east) {
+      FeatureRings feature = read_on_grid(square(west, south, east, south + 10), "EPSG:4326", grid);
+      unite_parts(feature.rings, feature.part_ends);
+      double area = 0;  // the ring of a pole lies within another one
+      for (std::size_t r = 0; r < feature.rings.size(); ++r) {
+        const double ring = area_of_ring(feature.rings[r]);
+        area = is_north && r > 0 ? std::abs(area - ring) : area + ring;
+      }
+      return area;
+    };
+    const double world = area_of(-180, 180);
+    EXPECT_GT(world, 0);
+    EXPECT_NEAR(area_of(-200, 200) / world, 1, 1e-6) << grid;
+    EXPECT_NEAR(area_of(-175, 195) / world, 1, 1e-6) << grid;
+  }
 }
 
 TEST(TargetGridTest, StopsShortOfThePolesOfMercator) {
