@@ -79,9 +79,17 @@ void FeatureStack::grow() {
 bool FeatureStack::find_covers(const Cancellation* cancellation) {
   constexpr unsigned kStepsBetweenChecks = 4096;
   CancellationCheck check(cancellation, kStepsBetweenChecks);
+  // Features that overlap others only elsewhere do not count: an edit there must not change what is
+  // drawn here.
+  const auto overlaps_any_here = [this](const Feature& feature) {
+    return std::ranges::any_of(overlaps_->of(feature.row), [this](const FeatureOverlap& overlap) {
+      return find(overlap.other) != kNone;
+    });
+  };
   bool are_all_opaque = true;
-  for (std::uint32_t number = 0; number < count_; ++number) {
-    are_all_opaque = are_all_opaque && features_[number].paint.is_opaque();
+  for (std::uint32_t number = 0; number < count_ && are_all_opaque; ++number) {
+    const Feature& feature = features_[number];
+    are_all_opaque = feature.paint.is_opaque() || !overlaps_any_here(feature);
   }
   covers_in_common_ = !are_all_opaque || options_.cuts_whole_features;
   bool are_any = false;

@@ -27,7 +27,8 @@ namespace {
 constexpr double kReachOfDust = 3;
 
 /// The changes for styles in which an overlap affects the drawing of a whole feature: overlapping
-/// features have no rounded corners and do not grow.
+/// features have no rounded corners and do not grow, and their lines are joined only with each
+/// other.
 LayerChanges with_all_of_pairs(LayerChanges changes) {
   std::vector<LayerChanges::Place> others;
   for (LayerChanges::Place& place : changes.places) {
@@ -170,7 +171,8 @@ class Comparison {
   }
 
   /// Whether a rule for class breaks gives other numbers, or other values are joined: then features
-  /// that have not changed themselves may have other colours.
+  /// that have not changed themselves may have other colours. So they may in debug marks, which
+  /// colour features by their rows.
   static bool has_other_classes(const std::string& name, const TilePlan& before,
                                 const TilePlan& after) {
     const auto classing_in = [&name](const TilePlan& plan) -> const Classing* {
@@ -181,6 +183,7 @@ class Comparison {
     const Classing* old = classing_in(before);
     const Classing* now = classing_in(after);
     if (old == nullptr || now == nullptr) return false;
+    if (before.debug.faces) return true;
     const auto joined = [](const Classing& classing) {
       return classing.joined == nullptr ? std::string() : classing.joined->key();
     };
@@ -246,6 +249,14 @@ class Comparison {
     }
   }
 
+  /// Whether a feature may be drawn otherwise because it overlaps another one, however far away.
+  /// Candidates are those of styles with other joins, too.
+  bool depends_on_overlaps_elsewhere(const LayerStyle& style) const {
+    const bool may_be_joined =
+        style.stroke.join != LineJoin::round || request_.certainty == Certainty::candidates;
+    return style.smooth > 0 || style.grow > 0 || (style.stroke.width > 0 && may_be_joined);
+  }
+
   /// Layers visible in only one of the states have other zooms or opacities, which is not a change
   /// of the data.
   std::vector<TileId> candidates(int zoom, const TilePlan& before, const TilePlan& after) const {
@@ -257,7 +268,7 @@ class Comparison {
         const bool is_reclassed = has_other_classes(name_of(*plan, paint), before, after);
         const LayerChanges* changes = is_reclassed ? &everywhere : changes_of(*plan, paint);
         if (changes == nullptr) continue;
-        if (paint.style.smooth > 0 || paint.style.grow > 0) {
+        if (depends_on_overlaps_elsewhere(paint.style)) {
           const auto found = of_pairs.find(changes);
           changes = found != of_pairs.end()
                         ? &found->second

@@ -208,6 +208,56 @@ TEST(ChangedTiles, WithoutTheTopologyTestAreListed) {
   }
 }
 
+/// A feature of that kind; `ring` is a JSON array of positions.
+std::string feature_of(const std::string& kind, const std::string& ring) {
+  return R"({"type":"Feature","properties":{"kind":")" + kind +
+         R"("},"geometry":{"type":"Polygon","coordinates":[)" + ring + "]}}";
+}
+
+TEST(ChangedTiles, IncludeThoseOfJoinedLinesOfAFeatureThatOverlapsAnotherElsewhere) {
+  // Two fields share borders with a long one. At its other end, a pond comes to overlap it.
+  const auto land_with = [](const std::string& pond) {
+    return load_land(feature_of("long", "[[0,0],[20,0],[20,5],[10,5],[5,5],[0,5],[0,0]]") + "," +
+                     feature_of("field", "[[0,5],[5,5],[5,10],[0,10],[0,5]]") + "," +
+                     feature_of("field", "[[5,5],[10,5],[12.5,12.5],[5,10],[5,5]]") + "," +
+                     feature_of("pond", pond));
+  };
+  const auto before = land_with("[[25,1],[28,1],[28,2.5],[25,2.5],[25,1]]");
+  const auto after = land_with("[[19,1],[22,1],[22,2.5],[19,2.5],[19,1]]");
+  const std::string style = "fill=cde&stroke=black&stroke-width=6&stroke-linejoin=bevel";
+  const Tiles different = Drawn(style).different(before, after);
+  EXPECT_EQ(changed(style, Certainty::bytes, before, after), different);
+  EXPECT_TRUE(holds_all(changed(style, Certainty::fingerprints, before, after), different));
+  // In candidates of a style with other joins.
+  const std::string round = "fill=cde&stroke=black&stroke-width=6";
+  EXPECT_TRUE(holds_all(changed(round, Certainty::candidates, before, after), different));
+}
+
+TEST(ChangedTiles, AreNotThoseWhereATranslucentFeatureOverlapsNothing) {
+  // Two woods that cross, a long field, and a pond that comes to overlap the far end of the field.
+  const auto land_with = [](const std::string& pond) {
+    return load_land(
+        feature_of("field", "[[5e-5,7e-4],[4e-3,7e-4],[4e-3,9e-4],[5e-5,9e-4],[5e-5,7e-4]]") + "," +
+        feature_of("wood", "[[1e-4,1e-4],[6e-4,2.3e-4],[6e-4,3.3e-4],[1e-4,2e-4],[1e-4,1e-4]]") +
+        "," +
+        feature_of("wood", "[[2e-4,5e-5],[3e-4,5e-5],[4.7e-4,6e-4],[3.7e-4,6e-4],[2e-4,5e-5]]") +
+        "," + feature_of("pond", pond));
+  };
+  const auto before =
+      land_with("[[5e-3,7.5e-4],[5.4e-3,7.5e-4],[5.4e-3,8e-4],[5e-3,8e-4],[5e-3,7.5e-4]]");
+  const auto after =
+      land_with("[[3.8e-3,7.5e-4],[4.2e-3,7.5e-4],[4.2e-3,8e-4],[3.8e-3,8e-4],[3.8e-3,7.5e-4]]");
+  TilePainter painter(std::make_unique<SoftwareRenderer>());
+  const auto fingerprint_in = [&painter](const std::shared_ptr<const Dataset>& dataset) {
+    TileRequest request =
+        request_of("color-by=kind&classes=wood:green,field:ff000080", Certainty::bytes).tile;
+    request.tile = {18, 131072, 131071};  // the woods and an end of the field
+    const auto plan = plan_tile(request, dataset);
+    return painter.identify({&*plan});
+  };
+  EXPECT_EQ(fingerprint_in(before), fingerprint_in(after));
+}
+
 TEST(ChangedTiles, EndAtTheZoomWithTooMany) {
   EditedLand one(3);
   EditedLand other(4);
