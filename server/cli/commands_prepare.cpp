@@ -202,6 +202,24 @@ void join(const std::vector<std::string>& files, const std::string& output) {
              static_cast<double>(std::filesystem::file_size(output)) / 1e6);
 }
 
+/// The file of the overview of parts of that source in that folder: one that is there already,
+/// which the new one replaces, as there can be only one beside the parts.
+std::filesystem::path overview_of_source(const std::filesystem::path& folder,
+                                         const SourceStamp& source, const std::string& layer) {
+  for (const std::string& file :
+       files_of_pattern((folder / ("*" + std::string(kExtension))).string())) {
+    if (!is_prepared_file(file)) continue;
+    try {
+      const PreparedSummary summary = read_prepared_summary(file);
+      const bool is_overview = summary.part && summary.part->is_overview();
+      if (is_overview && summary.source.path == source.path) return file;
+    } catch (const std::exception&) {  // damaged, or of another version: whatever it is
+      continue;
+    }
+  }
+  return folder / (layer + "-overview" + kExtension);
+}
+
 /// Prepares some of the parts of a file, and an overview if they are all of them.
 void prepare_parts(const LayerConfig& layer, const LoadOptions& how, const PartRange& range,
                    const PrepareArguments& arguments) {
@@ -214,7 +232,7 @@ void prepare_parts(const LayerConfig& layer, const LoadOptions& how, const PartR
     files.push_back((folder / name_of_part(layer.name, of_part.part, range.count)).string());
     prepare(layer.file, source, of_part, arguments.max_skipped, files.back(), arguments.reuse);
   }
-  if (range.is_all()) join(files, (folder / (layer.name + "-overview" + kExtension)).string());
+  if (range.is_all()) join(files, overview_of_source(folder, source, layer.name).string());
 }
 
 /// The file of an overview in that folder: one among these files, which the new one replaces, as

@@ -278,12 +278,14 @@ void make_archive(const std::vector<std::string>& logs, const std::string& outpu
       duration_words(seconds_since(begin))));
 }
 
-void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder) {
+SeedLogHead head_of(const SeedArguments& arguments, const Work& work) {
+  return {work.plan.identity(work.renderer, work.labels->identity_of_fonts()),
+          work.jobs.jobs.size(), work.range, part_of(arguments),
+          describe(work.request, *work.dataset)};
+}
+
+void seed_into(SeedLog& log, const SeedArguments& arguments, const Work& work, Seeder& seeder) {
   const std::string path = log_path(arguments);
-  const SeedLogHead head{work.plan.identity(work.renderer, work.labels->identity_of_fonts()),
-                         work.jobs.jobs.size(), work.range, part_of(arguments),
-                         describe(work.request, *work.dataset)};
-  SeedLog log(path, head);
   double done = 0;
   for (const std::uint64_t job : log.done()) done += work.jobs.jobs[job].cost;
   const double cost = work.jobs.cost(work.range);
@@ -355,7 +357,9 @@ int run_seed(const SeedArguments& arguments) {
   }
   Seeder seeder(work.plan, work.jobs, std::move(work.renderers), work.labels, find_known);
   if (arguments.is_dry_run) return tell_estimate(work, seeder, !arguments.update.empty());
-  seed_into(arguments, work, seeder);
+  // Locked until it is removed: it belongs to this process while the archive is put together, too.
+  SeedLog log(log_path(arguments), head_of(arguments, work));
+  seed_into(log, arguments, work, seeder);
   if (!arguments.part.empty()) return 0;
   make_archive({log_path(arguments)}, arguments.output, options, !arguments.update.empty());
   std::filesystem::remove(log_path(arguments));

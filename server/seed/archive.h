@@ -31,6 +31,8 @@ struct ArchiveDescription {
   int scale = 1;
   std::string layers;  // comma-separated
   std::string style;   // as a query
+
+  friend bool operator==(const ArchiveDescription&, const ArchiveDescription&) = default;
 };
 
 enum class ArchiveKind : std::uint8_t { pmtiles, mbtiles, folder };

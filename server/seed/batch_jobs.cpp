@@ -138,7 +138,7 @@ fi
 part=$SLURM_ARRAY_TASK_ID
 status=0
 "$program" seed {words} \
-  --workers "${{SLURM_CPUS_PER_TASK:-2}}" --part "$part/{parts}" --output "$archive.part$part" || status=$?
+  {workers}--part "$part/{parts}" --output "$archive.part$part" || status=$?
 # Killed by a signal, for lack of memory mostly: Slurm itself requeues only what a node took with it.
 if ((status > 128 && ${{SLURM_RESTART_COUNT:-0}} < 100)); then exec scontrol requeue "$SLURM_JOB_ID"; fi
 exit "$status"
@@ -165,11 +165,20 @@ std::string kubernetes_jobs(const BatchSeeding& seeding) {
       fmt::arg("container", kContainer), fmt::arg("sparse", sparse_option(seeding)));
 }
 
+/// An option may be given once only.
+const char* workers_of_task(const BatchSeeding& seeding) {
+  const bool is_given = std::ranges::any_of(seeding.arguments, [](const std::string& word) {
+    return word == "--workers" || word.starts_with("--workers=");
+  });
+  return is_given ? "" : "--workers \"${SLURM_CPUS_PER_TASK:-2}\" ";
+}
+
 std::string slurm_script(const BatchSeeding& seeding) {
   return fmt::format(
       fmt::runtime(kSlurm), fmt::arg("parts", seeding.parts), fmt::arg("words", words_of(seeding)),
       fmt::arg("output", shell_word(seeding.output)),
-      fmt::arg("archive", shell_word(seeding.output)), fmt::arg("sparse", sparse_option(seeding)));
+      fmt::arg("archive", shell_word(seeding.output)), fmt::arg("sparse", sparse_option(seeding)),
+      fmt::arg("workers", workers_of_task(seeding)));
 }
 
 }  // namespace

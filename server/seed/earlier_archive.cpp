@@ -9,6 +9,7 @@
 
 #include "server/base/gzip.h"
 #include "server/base/json_text.h"
+#include "server/seed/seed_block.h"
 
 namespace trapeze {
 namespace {
@@ -69,7 +70,7 @@ std::optional<std::string> EarlierArchive::find(const Digest& fingerprint) const
   const auto bytes = file_.bytes();
   const auto part = part_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
                             found->offset, found->length);
-  if (!part) return std::nullopt;
+  if (!part || check_of(digest_of_bytes(*part)) != found->check) return std::nullopt;
   return std::string(*part);
 }
 

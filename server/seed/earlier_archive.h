@@ -18,7 +18,7 @@ class EarlierArchive {
   /// `trapeze seed`.
   explicit EarlierArchive(const std::string& path);
 
-  /// The bytes of a tile with that fingerprint, if there is one.
+  /// The bytes of a tile with that fingerprint, if there is one that is not damaged.
   std::optional<std::string> find(const Digest& fingerprint) const;
 
  private:

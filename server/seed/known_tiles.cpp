@@ -82,6 +82,32 @@ bool has_dust_or_edges(const Layer& layer, const LevelSpan& span, const Layer::S
          });
 }
 
+/// A layer at the first zoom at which it is drawn.
+struct FirstDrawn {
+  const TilePlan* plan = nullptr;
+  const LayerPaint* paint = nullptr;
+
+  std::size_t layer() const { return paint->layer; }
+};
+
+/// The layers that are drawn at any of the zooms, from the top. A layer that begins later goes
+/// below the one that it lies under at its first zoom. Each is drawn at consecutive zooms, so one
+/// that has ended by then is never drawn together with it.
+std::vector<FirstDrawn> layers_from_the_top(const SeedPlan& plan) {
+  std::vector<FirstDrawn> layers;
+  for (int zoom = plan.zooms().first; zoom <= plan.zooms().last; ++zoom) {
+    const TilePlan& of_zoom = plan.at(zoom);
+    auto below = layers.begin();  // where a layer under the previous one goes
+    for (auto paint = of_zoom.layers.rbegin(); paint != of_zoom.layers.rend(); ++paint) {
+      if (!paint->style.is_visible()) continue;
+      auto found = std::ranges::find(layers, paint->layer, &FirstDrawn::layer);
+      if (found == layers.end()) found = layers.insert(below, {&of_zoom, &*paint});
+      below = found + 1;
+    }
+  }
+  return layers;
+}
+
 }  // namespace
 
 KnownTiles::KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes,
@@ -90,15 +116,11 @@ KnownTiles::KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> 
   const ZoomRange zooms = plan.zooms();
   steps_.resize(static_cast<std::size_t>(zooms.last) + 1);
   looks_.resize(steps_.size());
+  for (const FirstDrawn& first : layers_from_the_top(plan)) add_drawn(*first.plan, *first.paint);
   for (int zoom = zooms.first; zoom <= zooms.last; ++zoom) {
-    const TilePlan& of_zoom = plan.at(zoom);
-    for (auto paint = of_zoom.layers.rbegin(); paint != of_zoom.layers.rend(); ++paint) {
-      if (!paint->style.is_visible()) continue;
-      if (std::ranges::find(drawn_, paint->layer, &Drawn::layer) == drawn_.end()) {
-        add_drawn(of_zoom, *paint);
-      }
+    for (const LayerPaint& paint : plan.at(zoom).layers) {
       for (Drawn& drawn : drawn_) {
-        if (drawn.layer == paint->layer) drawn.paints[static_cast<std::size_t>(zoom)] = &*paint;
+        if (drawn.layer == paint.layer) drawn.paints[static_cast<std::size_t>(zoom)] = &paint;
       }
     }
   }

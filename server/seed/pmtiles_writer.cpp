@@ -105,7 +105,7 @@ void PmtilesWriter::add_entries(std::uint64_t id, std::uint64_t count,
 
 void PmtilesWriter::add_fingerprint(const Digest& fingerprint, const Digest& content) {
   const ContentTable::Content& found = contents_.find_or_add(content).content;
-  fingerprints_[fingerprint_count_++] = {fingerprint, found.place, found.length};
+  fingerprints_[fingerprint_count_++] = {fingerprint, found.place, found.length, check_of(content)};
 }
 
 void PmtilesWriter::finish() {

@@ -35,8 +35,13 @@ struct PmtilesEntry {
 struct StoredFingerprint {
   Digest fingerprint;
   std::uint64_t offset = 0;  // in the file
-  std::uint64_t length = 0;
+  std::uint32_t length = 0;
+  std::uint32_t check = 0;  // check_of() the digest of the bytes
 };
+/// What recognises damaged bytes.
+inline std::uint32_t check_of(const Digest& content) {
+  return static_cast<std::uint32_t>(content.low);
+}
 
 /// The member of the metadata that contains the position of the fingerprints.
 inline constexpr const char* kPmtilesOwnMember = "trapeze";

@@ -14,12 +14,14 @@
 #include <system_error>
 #include <utility>
 
+#include "core/io/file/checksum.h"
 #include "server/base/json_text.h"
 
 namespace trapeze {
 namespace {
 
 constexpr std::string_view kLogMark = "trapeze seeding 1\n";
+constexpr const char* kChecksum = "checksum";  // the member with that of the others
 
 [[noreturn]] void refuse_log(const std::string& path, const std::string& why) {
   throw std::runtime_error(fmt::format("{}: {}", path, why));
@@ -30,28 +32,37 @@ constexpr std::string_view kLogMark = "trapeze seeding 1\n";
       fmt::format("cannot write {}: {}", path, std::generic_category().message(error)));
 }
 
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::uint64_t checksum_of_members(const Json& json) {
+  return checksum(std::as_bytes(std::span(dumped(json))));
+}
+
 /// A line of JSON after the mark, padded with spaces up to where blocks begin.
 std::string text_of(const SeedLogHead& head) {
   const ArchiveDescription& archive = head.archive;
-  const Json json = {{"identity", head.identity},
-                     {"jobs", head.jobs},
-                     {"first_job", head.range.first},
-                     {"end_job", head.range.end},
-                     {"part", head.part.number},
-                     {"parts", head.part.count},
-                     {"name", archive.name},
-                     {"description", archive.description},
-                     {"attribution", archive.attribution},
-                     {"minzoom", archive.zooms.first},
-                     {"maxzoom", archive.zooms.last},
-                     {"bounds", archive.bounds},
-                     {"center", archive.center},
-                     {"format", kTileFormatNames.name_of(archive.format)},
-                     {"scale", archive.scale},
-                     {"layers", archive.layers},
-                     {"style", archive.style}};
-  std::string text =
-      std::string(kLogMark) + json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  Json json = {{"identity", head.identity},
+               {"jobs", head.jobs},
+               {"first_job", head.range.first},
+               {"end_job", head.range.end},
+               {"part", head.part.number},
+               {"parts", head.part.count},
+               {"name", archive.name},
+               {"description", archive.description},
+               {"attribution", archive.attribution},
+               {"minzoom", archive.zooms.first},
+               {"maxzoom", archive.zooms.last},
+               {"bounds", archive.bounds},
+               {"center", archive.center},
+               {"format", kTileFormatNames.name_of(archive.format)},
+               {"scale", archive.scale},
+               {"layers", archive.layers},
+               {"style", archive.style}};
+  const std::uint64_t checksum = checksum_of_members(json);
+  json[kChecksum] = checksum;
+  std::string text = std::string(kLogMark) + dumped(json);
   const std::size_t size =
       (text.size() + 1 + kBlockAlignment - 1) / kBlockAlignment * kBlockAlignment;
   text.append(size - 1 - text.size(), ' ').push_back('\n');
@@ -63,16 +74,18 @@ struct ReadHead {
   std::size_t size = 0;
 };
 
-/// Nothing if it is not a head, or not a complete one.
+/// Nothing if it is not a head, or not a complete one, or damaged.
 std::optional<ReadHead> read_head(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!text.starts_with(kLogMark)) return std::nullopt;
   const std::size_t end = text.find('\n', kLogMark.size());
   if (end == std::string_view::npos) return std::nullopt;
-  const Json json =
-      Json::parse(text.substr(kLogMark.size(), end - kLogMark.size()), nullptr, false);
+  Json json = Json::parse(text.substr(kLogMark.size(), end - kLogMark.size()), nullptr, false);
   if (!json.is_object()) return std::nullopt;
   try {
+    const std::uint64_t checksum = json.at(kChecksum);
+    json.erase(kChecksum);
+    if (checksum_of_members(json) != checksum) return std::nullopt;
     SeedLogHead head;
     head.identity = json.at("identity");
     head.jobs = json.at("jobs");
@@ -119,6 +132,8 @@ SeedLog::SeedLog(const std::string& path, const SeedLogHead& head)
     const std::string text = text_of(head);
     struct stat status {};
     if (fstat(file_, &status) != 0) fail_to_write(path, errno);
+    // Finished, and removed after it was opened here.
+    if (status.st_nlink == 0) refuse_log(path, "another process is writing it");
     const auto size = static_cast<std::size_t>(status.st_size);
     std::string begin(std::min(size, text.size()), '\0');
     if (pread(file_, begin.data(), begin.size(), 0) != static_cast<ssize_t>(begin.size())) {
@@ -182,7 +197,7 @@ SeedLogs::SeedLogs(const std::vector<std::string>& paths) {
     files_.push_back(std::make_unique<MappedFile>(path));
     const std::span<const std::byte> bytes = files_.back()->bytes();
     const std::optional<ReadHead> read = read_head(bytes);
-    if (!read) refuse_log(path, "this is not a part of a seeding");
+    if (!read) refuse_log(path, "this is not a part of a seeding, or it is damaged");
     const SeedLogHead& head = read->head;
     if (!first) {
       first = head;
@@ -190,6 +205,10 @@ SeedLogs::SeedLogs(const std::vector<std::string>& paths) {
     }
     if (head.identity != first->identity || head.jobs != first->jobs) {
       refuse_log(path, fmt::format("this is a part of another seeding than {}", paths.front()));
+    }
+    if (head.archive != first->archive) {
+      refuse_log(path, fmt::format("its title, attribution, bounds or style are not those of {}",
+                                   paths.front()));
     }
     std::size_t jobs = 0;
     for_each_block(bytes, read->size, [&](const SeedBlock& block) {

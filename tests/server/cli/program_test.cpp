@@ -200,6 +200,28 @@ TEST(ProgramTest, InterruptedCommandsLeaveNothingBehind) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(ProgramTest, SeedsAnArchiveThatNoOtherProcessSeedsMeanwhile) {
+  const std::string folder = scratch_path("seeded");
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directory(folder);
+  const std::vector<std::string> arguments = {
+      "seed",     fixture("rings.geojson"), "--renderer", "software", "--zooms", "0-9",
+      "--output", folder + "/rings.mbtiles"};
+  Program first(arguments);
+  const auto is_being_put_together = [&folder] {
+    return std::ranges::any_of(names_in(folder), [](const std::string& name) {
+      return name.find(".tmp.") != std::string::npos;
+    });
+  };
+  for (int i = 0; i < 20'000 && !is_being_put_together(); ++i) std::this_thread::sleep_for(1ms);
+  Program second(arguments);
+  EXPECT_EQ(second.wait(), 1);
+  EXPECT_THAT(second.output(), HasSubstr("another process is writing it"));
+  EXPECT_EQ(first.wait(), 0) << first.output();
+  EXPECT_THAT(names_in(folder), ::testing::ElementsAre("rings.mbtiles"));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
   Program program(serve_arguments({fixture("rings.geojson"), fixture("west.geojson")}));
   const std::uint16_t port = program.port();
@@ -935,6 +957,27 @@ TEST(ProgramTest, PreparesAgainWithWhatHasNotChanged) {
   std::filesystem::permissions(file, std::filesystem::perms::owner_all);
   std::filesystem::resize_file(file, 1000);
   EXPECT_THAT(prepare({"--reuse", file}, 1), HasSubstr(file + ": is damaged"));
+}
+
+// One made by --join, where many machines prepared the parts, is replaced and not joined by
+// another.
+TEST(ProgramTest, PreparesOneOverviewOfTheSameParts) {
+  const std::string folder = scratch_path("parts");
+  std::filesystem::remove_all(folder);
+  const auto prepare = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "prepare");
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), 0) << program.output();
+  };
+  for (const char* const part : {"1/2", "2/2"}) {
+    prepare({fixture("rings.geojson"), "--part", part, "--output", folder});
+  }
+  prepare({"--join", folder + "/*.trapeze", "--output", folder});
+  prepare({fixture("rings.geojson"), "--part", "1-2/2", "--output", folder});
+  EXPECT_EQ(names_in(folder).size(), 3u);
+  Program check({"check", folder + "/*.trapeze"});
+  EXPECT_EQ(check.wait(), 0) << check.output();
+  std::filesystem::remove_all(folder);
 }
 
 TEST(ProgramTest, PreparesFilesThatAreServedUnderTheSameTags) {

@@ -6,6 +6,8 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
+#include <array>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -341,6 +343,32 @@ TEST_F(ArchiveTest, PartsThatAreMissingOrOfSomethingElseAreRefused) {
   EXPECT_THROW(SeedLogs({folder_.file("rings")}), std::runtime_error);
 }
 
+TEST_F(ArchiveTest, PartsThatAreDescribedDifferentlyOrDamagedAreRefused) {
+  const std::string first = folder_.file("first");
+  const std::string second = folder_.file("second");
+  seeding_.run(first, 1, {1, 2});
+  seeding_.run(second, 1, {2, 2});
+  EXPECT_NO_THROW(SeedLogs({first, second}));
+  const std::string whole = read_file(first);
+  for (const auto& [from, to] :
+       {std::pair("\"minzoom\":0", "\"minzoom\":2"), std::pair("\"maxzoom\":7", "\"maxzoom\":9"),
+        std::pair("drawn by hand", "drawn by land")}) {
+    std::ofstream(first, std::ios::binary) << testing::changed(whole, from, to);
+    EXPECT_THROW(SeedLogs({first, second}), std::runtime_error) << to;
+  }
+  SeedLogHead other = seeding_.head({2, 2});
+  other.archive.attribution = "drawn by another hand";
+  fs::remove(second);
+  SeedLog{second, other};
+  std::ofstream(first, std::ios::binary) << whole;
+  try {
+    SeedLogs({first, second});
+    ADD_FAILURE() << "no failure";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("attribution"));
+  }
+}
+
 TEST_F(ArchiveTest, GoingOnAfterAnyCutGivesTheSameBytes) {
   const std::string whole = read_file(archive("whole.pmtiles"));
   const std::string log = read_file(log_);
@@ -431,6 +459,30 @@ TEST(UpdateTest, OfUnchangedDataNothingIsDrawn) {
   EXPECT_GT(update.progress().figures.drawn, 0u);
   EXPECT_EQ(update.progress().figures.drawn, update.progress().reused);
   EXPECT_EQ(update.progress().figures.alone, 0u);
+}
+
+TEST(UpdateTest, WhatIsDamagedIsDrawnAgain) {
+  constexpr ZoomRange kZooms{4, 8};
+  TemporaryFolder folder;
+  testing::EditedLand land(7);
+  const auto dataset = land.load();
+  const auto plan = SeedPlan::make(seed_request(*dataset, kZooms, "fill-opacity=0.5"), dataset);
+  Seeding(*plan, kZooms).run(folder.file("old"));
+  join_into_archive(SeedLogs({folder.file("old")}), folder.file("old.pmtiles"), {});
+  const std::string whole = read_file(folder.file("old.pmtiles"));
+  std::string damaged = whole;
+  constexpr std::size_t kPlaceOfTiles = 56;  // in the header: offset and length
+  std::array<std::uint64_t, 2> tiles{};
+  std::memcpy(tiles.data(), whole.data() + kPlaceOfTiles, sizeof tiles);
+  for (std::size_t i = tiles[0] + 40; i < tiles[0] + tiles[1]; i += 40) damaged[i] ^= 1;
+  std::ofstream(folder.file("damaged.pmtiles"), std::ios::binary) << damaged;
+  const EarlierArchive earlier(folder.file("damaged.pmtiles"));
+  Seeding update(*plan, kZooms);
+  update.run(folder.file("update"), 1, {},
+             [&](const Digest& fingerprint) { return earlier.find(fingerprint); });
+  join_into_archive(SeedLogs({folder.file("update")}), folder.file("update.pmtiles"), {});
+  EXPECT_EQ(update.progress().reused, 0u);
+  EXPECT_TRUE(read_file(folder.file("update.pmtiles")) == whole);
 }
 
 TEST(UpdateTest, WhatIsNoArchiveOfOursIsRefused) {

@@ -84,6 +84,16 @@ TEST(KnownTilesTest, LayersOfSomeZoomsOnlyAreSeenThereOnly) {
   testing::expect_served_bytes(*plan);
 }
 
+TEST(KnownTilesTest, ALayerThatBeginsLaterStillLiesOverThoseBelowIt) {
+  const auto all = testing::sample_dataset();
+  std::vector<ServedLayer> layers = all->layers_on_all_grids();
+  layers[1].config.min_zoom = 3;
+  layers[1].config.max_zoom = 6;
+  const auto dataset = std::make_shared<const Dataset>(layers);
+  const auto plan = SeedPlan::make(seed_request(*dataset, {0, 6}, "fill-opacity=1"), dataset);
+  testing::expect_served_bytes(*plan);
+}
+
 TEST(KnownTilesTest, MostTilesAreNotLookedAt) {
   const auto dataset = testing::sample_dataset();
   const auto plan = SeedPlan::make(seed_request(*dataset, {0, 9}, "stroke=black"), dataset);
