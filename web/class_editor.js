@@ -1,7 +1,7 @@
 // Edits colours by attribute: the property, and either a list of values with colours, or breaks with a ramp.
 
 import { WAYS } from "./class_breaks.js";
-import { format_classes, parse_classes } from "./class_list.js";
+import { can_be_class, format_classes, parse_classes } from "./class_list.js";
 import { CLASS_COLOURS, COLOUR_OF_OTHERS, light_colour_at, rgb_of } from "./colours.js";
 import { button, choose, element, input, mark_wrong, select } from "./elements.js";
 
@@ -154,7 +154,11 @@ export class ClassEditor {
     this.hint_.textContent = values.length ? "" : "There are no values in view.";
     if (values.length === 0) return this.on_change_();
     if (this.is_by_range_()) this.breaks_.value = this.breaks_of_(quantiles).join(", ");
-    else this.classes_ = classes_of(values.map(({ value }) => value));
+    else {
+      const found = values.map(({ value }) => value).filter(can_be_class);
+      if (found.length === 0) this.hint_.textContent = "The values have line breaks, or are too long.";
+      this.classes_ = classes_of(found);
+    }
     this.show_rows_();
     this.on_change_();
   }

@@ -102,8 +102,10 @@ export class FeaturePanel {
   }
 }
 
-function in_words(value) {
+/** A value for people: numbers with seven digits, and with all of those before the point. */
+export function in_words(value) {
   if (value === null) return "–";
-  return typeof value === "number" && !Number.isInteger(value)
-    ? String(Number(value.toPrecision(7))) : String(value);
+  if (typeof value !== "number" || Number.isInteger(value)) return String(value);
+  const digits = Math.max(7, String(Math.trunc(Math.abs(value))).length + 2);
+  return String(Number(value.toPrecision(digits)));
 }

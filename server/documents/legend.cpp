@@ -186,11 +186,21 @@ class ClassLabels {
   int significant_ = 0;  // digits, for numbers that decimals do not tell apart; 0: as in the format
 };
 
-/// The title of the joined values, if they colour the layer.
-std::string title_of_values(const ServedLayer& served, const LayerStyle& style) {
+/// The title of the joined values, if they colour the layer. `query` is its complete style.
+std::string title_of_values(const ServedLayer& served, const StyleQuery& query,
+                            const LayerStyle& style) {
   const JoinedValues* joined = style.classing.joined.get();
   if (joined == nullptr || !style.origin || style.origin->attribute != kJoinedName) return {};
   if (served.tables != nullptr) {
+    // Tables with the same contents may have different titles.
+    const ParameterValue* chosen = query.find(served.config.name, ParameterId::values);
+    const auto* choice = chosen == nullptr ? nullptr : std::get_if<TableChoice>(chosen);
+    const auto wanted =
+        choice == nullptr ? served.tables->end() : served.tables->find(choice->name);
+    if (wanted != served.tables->end()) {
+      const NamedTable& table = wanted->second;
+      return table.title.empty() ? table.table->names().value : table.title;
+    }
     for (const auto& [name, named] : *served.tables) {
       // Not by address: a join that is kept over a reload has the table that was read before it.
       if (named.table->id() == joined->table().id() && !named.title.empty()) return named.title;
@@ -199,11 +209,11 @@ std::string title_of_values(const ServedLayer& served, const LayerStyle& style) 
   return joined->table().names().value;
 }
 
-LayerLegend legend_of_layer(const ServedLayer& served, LayerStyle style) {
+LayerLegend legend_of_layer(const ServedLayer& served, const StyleQuery& query, LayerStyle style) {
   LayerLegend legend;
   legend.name = served.config.name;
   legend.title = served.config.title;
-  legend.values_title = title_of_values(served, style);
+  legend.values_title = title_of_values(served, query, style);
   legend.entries = ClassLabels(style).entries(served.config.title);
   legend.style = std::move(style);
   return legend;
@@ -222,7 +232,7 @@ Result<std::vector<LayerLegend>> legend_of(const std::vector<std::string>& layer
     if (!complete) return complete.problem();
     auto style = layer_style(*complete, served, *position, Looking::for_legend);
     if (!style) return std::move(style).problem();
-    legend.push_back(legend_of_layer(served, *std::move(style)));
+    legend.push_back(legend_of_layer(served, *complete, *std::move(style)));
   }
   return legend;
 }

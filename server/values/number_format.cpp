@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 namespace trapeze {
@@ -54,8 +55,9 @@ std::string si(double number, const NumberFormat& format) {
   constexpr int kLast = 6;
   if (number == 0) return "0";
   const int significant = std::max(format.digits.value_or(3), 1);
-  // Determined by the rounded number: 999,999 is 1.00M.
-  const std::string rounded = fmt::format("{:.{}e}", std::abs(number), significant - 1);
+  // Determined by the rounded number: 999,999 is 1.00M, and with two digits 123,456 is 120k.
+  const std::string rounded = fmt::format("{:.{}e}", number, significant - 1);
+  std::from_chars(rounded.data(), rounded.data() + rounded.size(), number);
   const int exponent = std::stoi(rounded.substr(rounded.find('e') + 1));
   const int power = std::clamp(static_cast<int>(std::floor(exponent / 3.0)), kFirst, kLast);
   const double scaled = number / std::pow(1000.0, power);

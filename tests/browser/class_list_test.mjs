@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { format_classes, parse_classes } from "../../web/class_list.js";
+import { can_be_class, format_classes, parse_classes } from "../../web/class_list.js";
 import { parameters_of_layers, query_part } from "../../web/tile_query.js";
 
 const value = (text, colour) => ({ kind: "value", value: text, colour });
@@ -22,6 +22,15 @@ test("classes that are written are read back", () => {
   const classes = [...texts.map((text) => value(text, "ff8800")),
     { kind: "null", value: "", colour: "eee" }, { kind: "others", value: "", colour: "ddd" }];
   assert.deepEqual(parse_classes(format_classes(classes)), classes);
+});
+
+test("values that an address cannot contain are no classes", () => {
+  for (const text of ["", "a", "x:y", "ünïcode", "9007199254740993", 7, "a".repeat(256), "長".repeat(40)]) {
+    assert.ok(can_be_class(text), text);
+  }
+  for (const text of ["1 Main Street\nSpringfield", "tab\tx", "\u007f", "長".repeat(41)]) {
+    assert.ok(!can_be_class(text), text);
+  }
 });
 
 test("what is no list of classes is told apart from an empty one", () => {

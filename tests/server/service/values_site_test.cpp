@@ -331,6 +331,27 @@ TEST_F(ValuesSiteTest, KeepsTitleAndAttributionWhenTheLayerIsNotReadAgain) {
   }
 }
 
+TEST_F(ValuesSiteTest, NamesTheTableThatIsAskedForEvenIfAnotherOneIsTheSame) {
+  ValueTableConfig people;
+  people.file = folder_.write("people.csv", "code,people\nC0,10\nC1,20\n");
+  people.title = "People";
+  ValueTableConfig residents = people;
+  residents.title = "Residents";
+  ValueTableConfig untitled = people;
+  untitled.title.clear();
+  const auto layers = layers_of_files({folder_.write("columns.geojson", columns())});
+  sample_.data().set(Dataset::load(
+      layers, nullptr, nullptr,
+      read_named_tables({{"people", people}, {"residents", residents}, {"untitled", untitled}})));
+  const auto title = [&](const std::string& table) -> std::string {
+    return json("/legend/columns.json?color-by=value&breaks=15&ramp=Reds&values=" +
+                table)["layers"][0]["values_title"];
+  };
+  EXPECT_EQ(title("people"), "People");
+  EXPECT_EQ(title("residents"), "Residents");
+  EXPECT_EQ(title("untitled"), "people");
+}
+
 class SmallValuesSiteTest : public ValuesSiteTest {
  protected:
   SmallValuesSiteTest() : ValuesSiteTest(20'000) {}

@@ -71,6 +71,22 @@ TEST(ClassBreaksTest, AreAtEqualDistances) {
   EXPECT_THAT(breaks_of("equal:4", {-2, 0, 1, 6}), ElementsAre(0, 2, 4));
 }
 
+// Of integers, many are on a break.
+TEST(ClassBreaksTest, AreAtEqualDistancesWithoutErrorsOfRounding) {
+  EXPECT_THAT(breaks_of("equal:5", {1, 6}), ElementsAre(2, 3, 4, 5));
+  for (const int least : {-7, 0, 1, 3, 10}) {
+    for (int classes = 2; classes <= kMostRuledClasses; ++classes) {
+      for (int width = 1; width <= 60; ++width) {
+        Numbers expected;
+        for (int i = 1; i < classes; ++i) expected.push_back(least + width * i);
+        const Numbers ends = {static_cast<double>(least),
+                              static_cast<double>(least + width * classes)};
+        ASSERT_EQ(class_breaks({BreakMethod::equal, classes}, spread_of(ends, 0)), expected);
+      }
+    }
+  }
+}
+
 TEST(ClassBreaksTest, AreStandardDeviationsFromTheMean) {
   // Mean 5, standard deviation 2.
   EXPECT_THAT(breaks_of("stddev", {2, 4, 4, 4, 5, 5, 7, 9}), ElementsAre(3, 5, 7, 9));

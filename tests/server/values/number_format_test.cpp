@@ -31,6 +31,10 @@ TEST(NumberFormatTest, WritesPowersOfAThousandAsPrefixes) {
   EXPECT_EQ(written(-42, ".2s"), "-42");
   EXPECT_EQ(written(0.00123, ".2s"), "1.2m");
   EXPECT_EQ(written(0, ".2s"), "0");
+  EXPECT_EQ(written(123'456, ".2s"), "120k");
+  EXPECT_EQ(written(-0.126, ".2s"), "-130m");
+  EXPECT_EQ(written(960, ".1s"), "1k");
+  EXPECT_EQ(written(345, ".1s"), "300");
 }
 
 TEST(NumberFormatTest, WritesEveryDouble) {
