@@ -140,10 +140,16 @@ std::vector<std::size_t> count_common_edges(const TrapezoidalGraph& g, const Bor
   return count;
 }
 
-/// The overlaps that exceed the fraction `most` of the area of the smaller feature.
-std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most) {
+/// The overlaps that exceed the fraction `most` of the area of the smaller feature; only those of
+/// two of these features, in ascending order, unless there are none.
+std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most,
+                                    const std::vector<std::uint32_t>& only) {
+  const auto is_meant = [&only](std::uint32_t feature) {
+    return only.empty() || std::ranges::binary_search(only, feature);
+  };
   std::vector<Overlap> overlaps;
   for (const Overlap& overlap : outcome.overlaps) {
+    if (!is_meant(overlap.lower) || !is_meant(overlap.upper)) continue;
     const double smaller = std::min(outcome.areas[overlap.lower], outcome.areas[overlap.upper]);
     if (overlap.area > most * smaller) overlaps.push_back(overlap);
   }
@@ -197,10 +203,11 @@ void leave_out(const std::vector<std::uint32_t>& features, CoverageOutcome& outc
   std::ranges::sort(outcome.apart);
 }
 
-/// Leaves features out until none overlap by more than that fraction of the smaller one.
+/// Leaves features out until none, or none of `only`, overlap by more than that fraction of the
+/// smaller one.
 void leave_out_overlaps(const TrapezoidalGraph& g, const SetMap& map, double most,
-                        CoverageOutcome& outcome) {
-  const std::vector<Overlap> overlaps = large_overlaps(outcome, most);
+                        const std::vector<std::uint32_t>& only, CoverageOutcome& outcome) {
+  const std::vector<Overlap> overlaps = large_overlaps(outcome, most, only);
   if (overlaps.empty()) return;
   leave_out(features_to_leave_out(
                 overlaps, count_common_edges(g, map.borders(), map.sets(), outcome.areas.size())),
@@ -356,14 +363,29 @@ class SetFaces {
   Table<RegionId, FaceId> shared_face_;      // of wide places; kOutside elsewhere
 };
 
+bool is_deep(const std::vector<std::uint32_t>& place) {
+  constexpr std::size_t kMostAtAPlace = 64;
+  return place.size() > kMostAtAPlace;
+}
+
+/// The features of all places that too many cover, in ascending order.
+std::vector<std::uint32_t> features_of_deep_places(const FaceFeatures& faces) {
+  std::vector<std::uint32_t> features;
+  for (const std::vector<std::uint32_t>& place : faces.shared()) {
+    if (is_deep(place)) features.insert(features.end(), place.begin(), place.end());
+  }
+  std::ranges::sort(features);
+  const auto repeated = std::ranges::unique(features);
+  features.erase(repeated.begin(), repeated.end());
+  return features;
+}
+
 /// Whether so many features overlap that a graph with trapezoids for each of them would be much
 /// larger than those of single features, which have that many vertices.
 bool is_crowded(const TrapezoidalGraph& g, const SetFaces& faces, const FaceFeatures& features,
                 std::size_t vertices) {
-  constexpr std::size_t kMostAtAPlace = 64;
   constexpr std::size_t kAlways = 4096;
   constexpr std::size_t kMostPerVertex = 16;
-  const auto is_deep = [](const auto& place) { return place.size() > kMostAtAPlace; };
   if (std::ranges::any_of(features.shared(), is_deep)) return true;
   if (features.shared().empty()) return false;
   std::size_t sides = 0;  // about as many as trapezoids
@@ -387,13 +409,16 @@ std::size_t count_vertices(std::span<const Rings* const> features,
 }
 
 /// The faces of those features that can share a graph; others are left out. None if fewer than that
-/// many remain, or if they form a crowd.
+/// many remain, or if they form a crowd. If it is enough, only features of the places that too many
+/// cover are left out as a crowd: a group may be a whole town.
 std::optional<SetFaces> choose_faces(const TrapezoidalGraph& g, const SetMap& map,
                                      std::span<const Rings* const> features,
                                      const CoverageTolerance& tolerance, std::size_t least,
                                      CoverageOutcome& outcome) {
-  for (const double most : {tolerance.most_overlap, tolerance.most_overlap_in_crowd}) {
-    leave_out_overlaps(g, map, most, outcome);
+  std::vector<std::uint32_t> only;
+  for (const double most :
+       {tolerance.most_overlap, tolerance.most_overlap_in_crowd, tolerance.most_overlap_in_crowd}) {
+    leave_out_overlaps(g, map, most, only, outcome);
     if (features.size() < outcome.apart.size() + least) return std::nullopt;
     outcome.faces = FaceFeatures::in_order(features.size());
     SetFaces faces(g, map.sets(), outcome.apart);
@@ -402,7 +427,8 @@ std::optional<SetFaces> choose_faces(const TrapezoidalGraph& g, const SetMap& ma
     }
     const std::size_t vertices = count_vertices(features, outcome.apart);
     if (!is_crowded(g, faces, outcome.faces, vertices)) return faces;
-    outcome.is_crowded = true;
+    only.clear();
+    if (!std::exchange(outcome.is_crowded, true)) only = features_of_deep_places(outcome.faces);
   }
   outcome.failure = SetMap::kTooManyOverEachOther;
   return std::nullopt;
@@ -605,13 +631,14 @@ void CoverageBuilder::plan_blocks(const Merging& merging, TrapezoidalGraph& grap
   std::optional<DividedVoid> divided =
       divide_void(graph, merging.ratio, first_void, classes_of_faces(outcome.faces, merging));
   if (!divided) return;
+  outcome.plan = std::move(divided->plan);
+  if (divided->segments.empty()) return;
   boundary_.assign(divided->segments);
   const FaceBeyond given = [&](EdgeId e, FaceId) { return divided->sides[e.value].second; };
   [[maybe_unused]] const bool is_swept = trapezoidation_.build(boundary_, given, graph, threads);
   assert(is_swept);  // new edges lie within the void and meet at their ends only
-  outcome.faces.add_void(divided->plan.due.size());
+  outcome.faces.add_void(outcome.plan->due.size());
   arcs_.trace(boundary_, static_cast<FaceId>(outcome.faces.face_count()), Regions(graph), graph);
-  outcome.plan = std::move(divided->plan);
 }
 
 namespace {

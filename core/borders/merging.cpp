@@ -176,6 +176,17 @@ void add_segment(Point a, Point b, FaceId right_of_ab, FaceId left_of_ab, Divide
   }
 }
 
+/// Whether two faces of one class share an edge.
+bool do_faces_touch(const TrapezoidalGraph& graph, const MergePlan& plan) {
+  for (std::size_t i = 0; i < graph.edges().size(); ++i) {
+    const Edge& edge = graph.edge(EdgeId(i));
+    const bool is_between =
+        !graph.is_frame(EdgeId(i)) && edge.face[kLeft] != kOutside && edge.face[kRight] != kOutside;
+    if (is_between && plan.are_of_one_class(edge.face[kLeft], edge.face[kRight])) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 // The largest set is what remains after everything else has been removed, from the greatest
@@ -255,9 +266,17 @@ std::optional<DividedVoid> divide_void(const TrapezoidalGraph& graph, double rat
   if (!mesh.has_failed()) divide_walls_for_bridges(mesh, graph, class_of_face);
   if (mesh.has_failed()) return std::nullopt;
   const Pieces pieces(mesh, distances_to_fill(mesh, graph, class_of_face), ratio, first_void);
-  if (pieces.due().empty()) return std::nullopt;
 
   DividedVoid divided;
+  MergePlan& plan = divided.plan;
+  plan.ratio = ratio;
+  plan.first_void = first_void;
+  plan.due = pieces.due();
+  plan.classes.assign(class_of_face.begin() + 1, class_of_face.end());
+  if (plan.due.empty()) {
+    if (!do_faces_touch(graph, plan)) return std::nullopt;
+    return divided;
+  }
   for (std::size_t i = 0; i < graph.edges().size(); ++i) {
     const Edge& edge = graph.edge(EdgeId(i));
     if (graph.is_frame(EdgeId(i)) || edge.face[kLeft] == kOutside ||
@@ -280,11 +299,6 @@ std::optional<DividedVoid> divide_void(const TrapezoidalGraph& graph, double rat
     add_segment(mesh.corner(h), mesh.corner(VoidMesh::next(h)), here, beyond, divided);
   }
 
-  MergePlan& plan = divided.plan;
-  plan.ratio = ratio;
-  plan.first_void = first_void;
-  plan.due = pieces.due();
-  plan.classes.assign(class_of_face.begin() + 1, class_of_face.end());
   const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
   for (const std::uint32_t t : pieces.firsts())
     plan.classes.push_back(classes[mesh.vertex(3 * t).value]);

@@ -46,7 +46,8 @@ struct DividedVoid {
 };
 
 /// Divides the void of a coverage as built, whose faces up to first_void - 1 belong to features;
-/// class_of_face as above. None if there is nothing to bridge or it would take too long.
+/// class_of_face as above. Without segments if there is nothing to bridge, but polygons touch; none
+/// if these do not touch either, or if it would take too long.
 std::optional<DividedVoid> divide_void(const TrapezoidalGraph& graph, double ratio,
                                        FaceId first_void,
                                        std::span<const std::uint32_t> class_of_face);

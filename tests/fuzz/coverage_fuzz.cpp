@@ -208,7 +208,7 @@ void check_blocks(const std::vector<const Rings*>& members, const Merging& mergi
   const FaceFeatures faces =
       assemble(members, CoverageMode::on, input.close_gaps, builder, plain).outcome.faces;
   const std::optional<Int128> filled = check_void(plain, classes_of_faces(faces, merging));
-  require(!filled || (*filled > 0) == outcome.plan.has_value(),
+  require(!filled || (*filled > 0) == (outcome.plan && !outcome.plan->due.empty()),
           "there is no plan of what is filled");
   if (!outcome.plan) return;
   require(filled == doubled_area(graph, *outcome.plan, true), "pieces are not what is filled");

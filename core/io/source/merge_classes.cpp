@@ -34,7 +34,7 @@ std::uint64_t digest_of(const Value& value) {
   if (const auto* number = std::get_if<std::int64_t>(&value)) {
     digester.add(static_cast<std::uint64_t>(*number));
   } else if (const auto* real = std::get_if<double>(&value)) {
-    digester.add(std::bit_cast<std::uint64_t>(*real));
+    digester.add(std::bit_cast<std::uint64_t>(*real == 0 ? 0.0 : *real));  // -0 equals 0
   } else if (const auto* text = std::get_if<std::string_view>(&value)) {
     for (const char c : *text) digester.add(static_cast<unsigned char>(c));
   }

@@ -288,6 +288,16 @@ TEST(CoverageGroups, ACrowdOfNothingElseIsNoCoverage) {
   EXPECT_EQ(many.apart.size(), 65u);
 }
 
+TEST(CoverageGroups, ACrowdLeavesOverlapsElsewhereTogether) {
+  std::vector<Rings> rings = squares(65);
+  rings.push_back(rings_from_text("500000 0, 501000 0, 501000 1000, 500000 1000"));
+  rings.push_back(rings_from_text("500500 500, 501500 500, 501500 1500, 500500 1500"));
+  const Assembly assembly = Features::of(rings).assembly(CoverageMode::on);
+  EXPECT_TRUE(assembly.outcome.is_crowded);
+  EXPECT_EQ(assembly.apart.size(), 64u);
+  EXPECT_THAT(assembly.together, ElementsAre(0, 65, 66));
+}
+
 /// A coverage layer with all features in one group.
 std::unique_ptr<Layer> layer_of(const std::vector<Rings>& features) {
   LayerOptions options;

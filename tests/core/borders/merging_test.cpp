@@ -405,6 +405,22 @@ TEST(Merging, TwoHousesBecomeOneRectangleWhenTheDistanceIsReached) {
       << "corners only";
 }
 
+TEST(Merging, TouchingHousesBecomeOneAlthoughThereIsNoVoidToBridge) {
+  const BuiltTown built(two_houses(0), {.ratio = 16});
+  ASSERT_TRUE(built.outcome.plan);
+  AdaptableGraph adaptable(built.graph, {}, &*built.outcome.plan);
+  adaptable.adapt_to(7.8);  // an eighth of the width over the ratio
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[1] == 2'000'000);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[2] == 2'000'000);
+  adaptable.adapt_to(7.9);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[1] == 4'000'000);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[2] == 0);
+}
+
+TEST(Merging, TouchingHousesOfTwoClassesAreNotMerged) {
+  EXPECT_FALSE(BuiltTown(two_houses(0), {.ratio = 16, .classes = {1, 2}}).outcome.plan);
+}
+
 /// Squares of 1000 x 1000 cells, 8 by 4 of them, with streets between them; each a feature, or all
 /// of them one.
 std::vector<Rings> squares(bool are_one_feature) {
