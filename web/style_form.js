@@ -287,7 +287,8 @@ function without_classes(style) {
 
 function example_filter(field) {
   if (!field) return "";
-  return field.type === "string" ? `${field.name} = 'value'` : `${field.name} > 10`;
+  const name = /^[a-z]\w*$/i.test(field.name) ? field.name : `"${field.name.replaceAll('"', '""')}"`;
+  return field.type === "string" ? `${name} = 'value'` : `${name} > 10`;
 }
 
 function fieldset(name, ...children) {
