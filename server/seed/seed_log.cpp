@@ -37,7 +37,8 @@ std::string dumped(const Json& json) {
 }
 
 std::uint64_t checksum_of_members(const Json& json) {
-  return checksum(std::as_bytes(std::span(dumped(json))));
+  const std::string text = dumped(json);
+  return checksum(std::as_bytes(std::span(text)));
 }
 
 /// A line of JSON after the mark, padded with spaces up to where blocks begin.
