@@ -305,11 +305,14 @@ void take_overlaps(const TakenOver& taken, bool all, std::vector<FeatureOverlap>
   }
 }
 
-/// By row: whether the feature is taken over and the overlaps between such features are known.
-std::vector<std::uint8_t> rows_with_known_overlaps(const TakenOver& taken, std::size_t rows) {
-  std::vector<std::uint8_t> is_known(rows, 0);
-  for (const TakenRow& row : taken.rows()) is_known[row.row] = 1;
-  return is_known;
+/// By row: features of the same kind are not compared with each other. These are the features of
+/// one graph, and all features taken over if the overlaps between them are known.
+std::vector<std::uint32_t> kinds_to_compare(const TakenOver& taken, bool are_known,
+                                            const std::vector<std::uint32_t>& graph_of) {
+  std::vector<std::uint32_t> kinds = graph_of;
+  if (!are_known) return kinds;
+  for (const TakenRow& row : taken.rows()) kinds[row.row] = kUnused;
+  return kinds;
 }
 
 /// The dust of a layer.
@@ -689,26 +692,24 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   const auto horizontal_edges = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
   tell(0.5);
   const std::vector<Box> boxes = boxes_of(arrays);
-  std::vector<std::uint8_t> is_known;
-  if (are_known) is_known = rows_with_known_overlaps(taken, arrays.graph_of.size());
+  const std::vector<std::uint32_t> kinds = kinds_to_compare(taken, are_known, arrays.graph_of);
   std::future<FeatureOverlaps> finding = std::async(launch, [&] {
     const MeshView mesh{0, arrays.vertices, arrays.edges, arrays.mesh.trapezoids};
     const GrowingMesh& all = arrays.mesh;
-    const auto find = [&](std::span<const std::uint8_t> known_rows,
+    const auto find = [&](std::span<const std::uint32_t> kinds_of_rows,
                           std::vector<FeatureOverlap> known) {
-      return find_overlaps(
-          {mesh, std::span(all.lifespans).first(polygons),
-           std::span(all.feature_of).first(polygons), arrays.graph_of, boxes, known_rows},
-          std::move(known), threads);
+      return find_overlaps({mesh, std::span(all.lifespans).first(polygons),
+                            std::span(all.feature_of).first(polygons), kinds_of_rows, boxes},
+                           std::move(known), threads);
     };
-    if (!are_known) return find({}, std::move(arrays.known));
+    if (!are_known) return find(kinds, std::move(arrays.known));
     std::vector<FeatureOverlap> in_common;
     std::ranges::copy_if(arrays.known, std::back_inserter(in_common),
                          &FeatureOverlap::is_in_common);
-    FeatureOverlaps found = find(is_known, std::move(arrays.known));
+    FeatureOverlaps found = find(kinds, std::move(arrays.known));
     if (found.is_complete) return found;
     // If nothing were taken over, they would not all be found, so the known ones are not kept.
-    return find({}, std::move(in_common));
+    return find(arrays.graph_of, std::move(in_common));
   });
   const Numbering number = order_edges_and_vertices(dust.motes.size(), arrays);
   order_milestones(arrays, *layer);

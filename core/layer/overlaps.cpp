@@ -99,9 +99,6 @@ class OverlapSearch {
     return std::ranges::all_of(
         rows, [&](std::uint32_t row) { return input_.kinds[row] == input_.kinds[rows.front()]; });
   }
-  bool are_known(std::uint32_t a, std::uint32_t b) const {
-    return !input_.is_known.empty() && input_.is_known[a] != 0 && input_.is_known[b] != 0;
-  }
   bool is_over() const { return steps_ > most_steps_ || found_.pairs.size() >= most_pairs_; }
 
   void collect_items();
@@ -264,18 +261,14 @@ void OverlapSearch::compare(std::uint32_t a, std::uint32_t b, const Box& place) 
     all.add(both);
     width = std::max(width, both.width());
   };
-  const bool is_known = are_known(a, b);
-  const auto add_unknown = [&](const Item& item, const Item& other) {
-    if (!is_known) add(item, other);
-  };
   // Each pair is found where the later of the two begins.
   std::size_t i = 0;
   std::size_t k = 0;
   while (i < some_.size() && k < others_.size()) {
     if (some_[i]->box.min_y <= others_[k]->box.min_y) {
-      steps_ += scan(*some_[i++], others_, k, add_unknown);
+      steps_ += scan(*some_[i++], others_, k, add);
     } else {
-      steps_ += scan(*others_[k++], some_, i, add_unknown);
+      steps_ += scan(*others_[k++], some_, i, add);
     }
   }
   width = std::max(width, all.width());

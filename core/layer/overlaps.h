@@ -87,9 +87,6 @@ struct OverlapInput {
   std::span<const std::uint32_t> kinds;       // by row: features of one kind are not compared
   std::span<const Box> boxes;                 // by row: bounding box of the feature; as many as
                                               // kinds
-  // By row, or empty: the overlaps between two of these features are among the known ones. They
-  // are looked through all the same, so that the search gives up where it would without that.
-  std::span<const std::uint8_t> is_known = {};
 };
 
 struct FeatureOverlaps {
@@ -100,8 +97,8 @@ struct FeatureOverlaps {
 
 /// Finds overlaps wider than two cells, which is more than snapping borders to the grid can produce
 /// between neighbours. Does not depend on the order of trapezoids. The result includes the `known`
-/// ones, between features of one kind or that are known, which may contain duplicates. Runs on up
-/// to `threads` threads; the result does not depend on their number.
+/// ones, between features of one kind, which may contain duplicates. Runs on up to `threads`
+/// threads; the result does not depend on their number.
 FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known = {},
                               unsigned threads = 1);
 

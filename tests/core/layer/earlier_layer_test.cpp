@@ -273,29 +273,6 @@ TEST(EarlierLayerTest, ThereAreNoMoreOverlapsThanIfNothingWereTakenOver) {
   expect_equal(anew, build(squares(1060), options, &before));
 }
 
-TEST(EarlierLayerTest, TheSearchForOverlapsGivesUpAsIfNothingWereTakenOver) {
-  LayerOptions options;
-  options.coverage = CoverageMode::off;
-  // Strips beside each other from the north-west to the south-east: their boxes all meet.
-  const auto strips = [](std::int32_t count) {
-    Map map(static_cast<std::size_t>(count));
-    for (std::int32_t i = 0; i < count; ++i) {
-      const Point p{200 * i, 200 * i};
-      const std::int32_t length = 1'000'000;
-      map[static_cast<std::size_t>(i)].add(std::vector<Point>{{p.x, -p.y},
-                                                              {p.x + 50, -p.y},
-                                                              {p.x + length + 50, -p.y + length},
-                                                              {p.x + length, -p.y + length}});
-    }
-    return map;
-  };
-  const Built before = build(strips(2500), options);
-  ASSERT_TRUE(before.layer->has_all_overlaps());
-  const Built anew = build(strips(3000), options);
-  ASSERT_FALSE(anew.layer->has_all_overlaps());
-  expect_equal(anew, build(strips(3000), options, &before));
-}
-
 TEST(EarlierLayerTest, NothingLeftOrNothingBeforeIsNoSpecialCase) {
   const Built nothing = build({}, {});
   const Map map = sample_map(2);
