@@ -175,19 +175,23 @@ class Comparison {
   /// colour features by their rows.
   static bool has_other_classes(const std::string& name, const TilePlan& before,
                                 const TilePlan& after) {
-    const auto classing_in = [&name](const TilePlan& plan) -> const Classing* {
+    const auto paint_in = [&name](const TilePlan& plan) -> const LayerPaint* {
       const auto found = std::ranges::find_if(
           plan.layers, [&](const LayerPaint& paint) { return name_of(plan, paint) == name; });
-      return found == plan.layers.end() ? nullptr : &found->style.classing;
+      return found == plan.layers.end() ? nullptr : &*found;
     };
-    const Classing* old = classing_in(before);
-    const Classing* now = classing_in(after);
+    const LayerPaint* old = paint_in(before);
+    const LayerPaint* now = paint_in(after);
     if (old == nullptr || now == nullptr) return false;
-    if (before.debug.faces) return true;
-    const auto joined = [](const Classing& classing) {
-      return classing.joined == nullptr ? std::string() : classing.joined->key();
+    const auto revision = [](const TilePlan& plan, const LayerPaint& paint) {
+      return plan.dataset->layers_on_all_grids()[paint.layer].revision;
     };
-    return old->breaks != now->breaks || joined(*old) != joined(*now);
+    if (before.debug.faces && revision(before, *old) != revision(after, *now)) return true;
+    const auto joined = [](const LayerPaint& paint) {
+      const auto& values = paint.style.classing.joined;
+      return values == nullptr ? std::string() : values->key();
+    };
+    return old->style.classing.breaks != now->style.classing.breaks || joined(*old) != joined(*now);
   }
 
   /// All places of the layers for which that holds.

@@ -258,6 +258,23 @@ TEST(ChangedTiles, AreNotThoseWhereATranslucentFeatureOverlapsNothing) {
   EXPECT_EQ(fingerprint_in(before), fingerprint_in(after));
 }
 
+TEST(ChangedTiles, OfFacesAreThoseOfAllFeaturesBehindOneThatWasDeleted) {
+  const std::string first = feature_of("pond", "[[-20,5],[-19,5],[-19,6],[-20,6],[-20,5]]");
+  const std::string others = feature_of("field", "[[0,5],[5,5],[5,10],[0,10],[0,5]]") + "," +
+                             feature_of("field", "[[10,5],[15,5],[15,10],[10,10],[10,5]]");
+  const auto before = load_land(first + "," + others);
+  const auto after = load_land(others);
+  for (const Certainty certainty : kCertaintyNames.values()) {
+    ChangeRequest request = request_of("", certainty);
+    request.tile.debug.faces = true;
+    request.zooms = {4, 4};
+    const Tiles found = set_of(changed_tiles(request, before, after)->tiles);
+    EXPECT_TRUE(found.contains({4, 8, 7})) << "the fields";
+    EXPECT_TRUE(found.contains({4, 7, 7})) << "the pond";
+    EXPECT_TRUE(changed_tiles(request, before, before)->tiles.empty());
+  }
+}
+
 TEST(ChangedTiles, EndAtTheZoomWithTooMany) {
   EditedLand one(3);
   EditedLand other(4);
