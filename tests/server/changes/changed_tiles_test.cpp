@@ -265,8 +265,7 @@ TEST(ChangedTiles, OfFacesAreThoseOfAllFeaturesBehindOneThatWasDeleted) {
   const auto before = load_land(first + "," + others);
   const auto after = load_land(others);
   for (const Certainty certainty : kCertaintyNames.values()) {
-    ChangeRequest request = request_of("", certainty);
-    request.tile.debug.faces = true;
+    ChangeRequest request = request_of("debug=faces", certainty);
     request.zooms = {4, 4};
     const Tiles found = set_of(changed_tiles(request, before, after)->tiles);
     EXPECT_TRUE(found.contains({4, 8, 7})) << "the fields";
