@@ -151,14 +151,11 @@ export class ClassEditor {
     this.hint_.textContent = "Looking…";
     const { values, quantiles } = await this.suggest_(property, this.from_.value === "all");
     if (this.property_.value !== property || asked !== this.asked_) return;
-    this.hint_.textContent = values.length ? "" : "There are no values in view.";
-    if (values.length === 0) return this.on_change_();
+    const found = values.map(({ value }) => value).filter(can_be_class);
+    this.hint_.textContent = found.length ? "" : "There are no values in view for classes.";
+    if (found.length === 0) return this.on_change_();
     if (this.is_by_range_()) this.breaks_.value = this.breaks_of_(quantiles).join(", ");
-    else {
-      const found = values.map(({ value }) => value).filter(can_be_class);
-      if (found.length === 0) this.hint_.textContent = "The values have line breaks, or are too long.";
-      this.classes_ = classes_of(found);
-    }
+    else this.classes_ = classes_of(found);
     this.show_rows_();
     this.on_change_();
   }

@@ -7,7 +7,6 @@
 
 const QUOTED = /^'((?:[^']|'')*)':/;
 const PLAIN = /^([^':,][^:,]*):/;
-const MOST_BYTES = 360; // of a value in an address: eight of them fit into one
 const COLOUR = /^([^,(]*(?:\([^)]*\)[^,]*)?)(?:,(?=.)|$)/;
 
 /** @returns {?ColourClass[]} null if `text` is not a list of classes */
@@ -30,10 +29,9 @@ export function format_classes(classes) {
   return classes.map(({ kind, value, colour }) => `${write_value(kind, value)}:${colour}`).join(",");
 }
 
-/** Whether a class can have that value: an address has no control characters, and little room. */
+/** Whether eight such values fit into an address, which has no control characters. */
 export function can_be_class(value) {
-  const text = String(value);
-  return !/\p{Cc}/u.test(text) && encodeURIComponent(text).length <= MOST_BYTES;
+  return !/\p{Cc}/u.test(value) && encodeURIComponent(value).length <= 360;
 }
 
 function read_value(text, is_quoted) {

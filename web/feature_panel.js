@@ -102,10 +102,8 @@ export class FeaturePanel {
   }
 }
 
-/** A value for people: numbers with seven digits, and with all of those before the point. */
 export function in_words(value) {
   if (value === null) return "–";
   if (typeof value !== "number" || Number.isInteger(value)) return String(value);
-  const digits = Math.max(7, String(Math.trunc(Math.abs(value))).length + 2);
-  return String(Number(value.toPrecision(digits)));
+  return String(Number(Math.abs(value) < 1e5 ? value.toPrecision(7) : value.toFixed(2)));
 }

@@ -287,7 +287,7 @@ function without_classes(style) {
 
 function example_filter(field) {
   if (!field) return "";
-  const name = /^[a-z]\w*$/i.test(field.name) ? field.name : `"${field.name.replaceAll('"', '""')}"`;
+  const name = /^\d|\W/.test(field.name) ? JSON.stringify(field.name) : field.name;
   return field.type === "string" ? `${name} = 'value'` : `${name} > 10`;
 }
 

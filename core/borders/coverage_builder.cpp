@@ -375,8 +375,8 @@ std::vector<std::uint32_t> features_of_deep_places(const FaceFeatures& faces) {
     if (is_deep(place)) features.insert(features.end(), place.begin(), place.end());
   }
   std::ranges::sort(features);
-  const auto repeated = std::ranges::unique(features);
-  features.erase(repeated.begin(), repeated.end());
+  const auto repeated = std::unique(features.begin(), features.end());
+  features.erase(repeated, features.end());
   return features;
 }
 
