@@ -93,11 +93,11 @@ bool is_filled_beyond(const VoidMesh& mesh, VoidMesh::HalfEdge side, double dist
   const VoidMesh::HalfEdge first = mesh.twin(side);
   const std::uint32_t triangle = VoidMesh::triangle_of(first);
   if (mesh.is_beyond(triangle) || own_distance(mesh, triangle) > distance) return false;
-  for (const VoidMesh::HalfEdge h : {VoidMesh::next(first), VoidMesh::before(first)}) {
-    if (mesh.is_wall(h) || mesh.length(h) <= distance) continue;
-    if (others == 0 || !is_filled_beyond(mesh, h, distance, others - 1)) return false;
-  }
-  return true;
+  const std::array sides{VoidMesh::next(first), VoidMesh::before(first)};
+  return std::ranges::all_of(sides, [&](VoidMesh::HalfEdge h) {
+    return mesh.is_wall(h) || mesh.length(h) <= distance ||
+           (others > 0 && is_filled_beyond(mesh, h, distance, others - 1));
+  });
 }
 
 bool is_filled_near(const VoidMesh& mesh, std::uint32_t triangle, double distance) {

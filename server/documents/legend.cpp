@@ -51,8 +51,7 @@ struct LayerLegend {
 /// Writes the labels of the classes of a style.
 class ClassLabels {
  public:
-  explicit ClassLabels(const LayerStyle& style) : style_(style) {
-    format_ = style.label_format;
+  explicit ClassLabels(const LayerStyle& style) : style_(style), format_(style.label_format) {
     const bool has_digits =
         format_ && (format_->digits || format_->type != NumberFormat::Type::fixed);
     if (has_digits || !is_ruled()) return;
