@@ -16,6 +16,7 @@
 #include "core/borders/merging.h"
 #include "core/borders/regions.h"
 #include "core/borders/set_map.h"
+#include "core/grid/disjoint_sets.h"
 #include "core/grid/web_mercator.h"
 
 namespace trapeze {
@@ -235,8 +236,8 @@ class SetFaces {
     std::vector<std::vector<std::uint32_t>> covers = find_covers(left_out);
     if (covers.empty()) return;
     regions_.emplace(g_);
-    join_regions();
-    const std::vector<bool> is_wide = find_wide(narrowest);
+    DisjointSets places = joined_regions();
+    const std::vector<bool> is_wide = find_wide(narrowest, places);
     std::vector<bool> has_face(covers.size(), false);
     for (std::size_t i = 0; i < is_wide.size(); ++i) {
       if (is_wide[i]) has_face[cover_of(RegionId(i))] = true;
@@ -247,7 +248,7 @@ class SetFaces {
     }
     shared_face_.reserve(is_wide.size());
     for (std::size_t i = 0; i < is_wide.size(); ++i) {
-      const bool is_shared = is_wide[place_of_[RegionId(i)].value];
+      const bool is_shared = is_wide[places.find(static_cast<std::uint32_t>(i))];
       shared_face_.push_back(is_shared ? face_of_cover[cover_of(RegionId(i))] : kOutside);
     }
   }
@@ -306,50 +307,42 @@ class SetFaces {
     }
   }
 
-  /// Joins adjacent regions with the same cover, between which only features left out end.
-  void join_regions() {
-    for (std::size_t i = 0; i < regions_->face.size(); ++i) place_of_.push_back(RegionId(i));
-    for_each_edge_between_regions([this](const Edge&, RegionId left, RegionId right) {
-      if (cover_of(left) == kNone || cover_of(left) != cover_of(right)) return;
-      left = find(left);
-      right = find(right);
-      place_of_[std::max(left, right)] = std::min(left, right);
+  /// The regions, joined where adjacent ones have the same cover: only features left out end there.
+  DisjointSets joined_regions() const {
+    DisjointSets places(regions_->face.size());
+    for_each_edge_between_regions([&](const Edge&, RegionId left, RegionId right) {
+      const bool is_shared = cover_of(left) != kNone;
+      if (is_shared && cover_of(left) == cover_of(right)) places.tie(left.value, right.value);
     });
-    for (std::size_t i = 0; i < place_of_.size(); ++i) find(RegionId(i));
-  }
-  RegionId find(RegionId region) {
-    RegionId first = region;
-    while (place_of_[first] != first) first = place_of_[first];
-    while (region != first) region = std::exchange(place_of_[region], first);
-    return first;
+    return places;
   }
 
   /// By the first region of a place with a cover: whether its mean width is greater than that.
-  std::vector<bool> find_wide(double narrowest) const {
-    struct Place {
+  std::vector<bool> find_wide(double narrowest, DisjointSets& places) const {
+    struct Extent {
       double area = 0;    // cells squared
       double border = 0;  // its length
     };
-    std::vector<Place> places(place_of_.size());
+    std::vector<Extent> extents(places.size());
     for_each_edge_between_regions([&](const Edge& edge, RegionId left, RegionId right) {
-      if (place_of_[left] == place_of_[right]) return;
+      if (places.find(left.value) == places.find(right.value)) return;
       const bool is_left = cover_of(left) != kNone;
       const bool is_right = cover_of(right) != kNone;
       if (!is_left && !is_right) return;
       const double strip = static_cast<double>(doubled_strip(g_, edge)) / 2;
       const double length = length_of(g_, edge);
       const auto add = [&](RegionId region, double area) {
-        Place& place = places[place_of_[region].value];
-        place.area += area;
-        place.border += length;
+        Extent& extent = extents[places.find(region.value)];
+        extent.area += area;
+        extent.border += length;
       };
       if (is_left) add(left, strip);
       if (is_right) add(right, -strip);
     });
     std::vector<bool> is_wide;
-    is_wide.reserve(places.size());
-    for (const Place& place : places) {
-      is_wide.push_back(place.border > 0 && 2 * place.area / place.border > narrowest);
+    is_wide.reserve(extents.size());
+    for (const Extent& extent : extents) {
+      is_wide.push_back(extent.border > 0 && 2 * extent.area / extent.border > narrowest);
     }
     return is_wide;
   }
@@ -359,7 +352,6 @@ class SetFaces {
   std::vector<FaceId> face_of_;              // by set
   std::vector<std::uint32_t> cover_of_set_;  // kNone: at most one feature
   std::optional<Regions> regions_;           // if any place has several features
-  Table<RegionId, RegionId> place_of_;       // leads to the first region of the place
   Table<RegionId, FaceId> shared_face_;      // of wide places; kOutside elsewhere
 };
 
