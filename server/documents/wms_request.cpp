@@ -124,20 +124,26 @@ bool is_own_style(std::string_view name) {
   return name.empty() || name == StyleBook::kDefaultName;
 }
 
-bool is_set(std::span<const QueryPair> query, std::string_view name, std::string_view layer) {
-  return std::ranges::any_of(query, [&](const QueryPair& pair) {
-    return pair.first == name || pair.first == fmt::format("{}.{}", layer, name);
-  });
-}
+/// A named style for one layer.
+struct StyleOfLayer {
+  std::string layer;
+  std::shared_ptr<const StyleQuery> style;
+};
 
-/// What a style sets for one layer, unless the query does. All parameters of a query take
-/// precedence over styles, also those for all layers.
-Result<StyleQuery> style_for_layer(const StyleQuery& style, const std::string& layer,
-                                   std::span<const QueryPair> query,
-                                   std::span<const std::string> layers) {
+/// What the styles set for their layers, unless the query does: all parameters of a query take
+/// precedence over styles, also those for all layers. Settings for the whole picture come from the
+/// first style that has them.
+Result<StyleQuery> put_together(std::span<const StyleOfLayer> styles,
+                                std::span<const QueryPair> query,
+                                std::span<const std::string> layers) {
+  StyleQuery named;
+  if (styles.empty()) return named;
   const auto own = StyleQuery::parse(query, layers);
   if (!own) return own.problem();
-  return style.of_layer(layer).without_those_of(*own);
+  for (const auto& [layer, style] : styles) {
+    named = named.over(style->of_layer(layer).without_those_of(*own), layers);
+  }
+  return named;
 }
 
 /// The styles of the layers, one for each or none at all, and the additional settings of the query.
@@ -150,19 +156,18 @@ Result<StyleQuery> style_of(std::vector<QueryPair> query, std::span<const std::s
     return ows_problem(400, ows::kStyleNotDefined, "STYLES",
                        "STYLES takes one name for each of LAYERS, or nothing at all.", list);
   }
-  // Settings for the whole picture come from the first style that has them.
-  StyleQuery named;
+  std::vector<StyleOfLayer> found;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (is_own_style(names[i])) continue;
-    const auto style = styles.find(names[i]);
+    auto style = styles.find(names[i]);
     if (style == nullptr) return unknown_style("STYLES", names[i]);
-    const auto of_layer = style_for_layer(*style, of_layers[i], query, layers);
-    if (!of_layer) return of_layer.problem();
-    named = named.over(*of_layer, layers);
+    found.push_back({of_layers[i], std::move(style)});
   }
+  auto named = put_together(found, query, layers);
+  if (!named) return std::move(named).problem();
   auto styled = styles.read(std::move(query));  // which names no style itself
   if (!styled) return styled.problem();
-  styled->named = std::make_shared<const StyleQuery>(std::move(named));
+  styled->named = std::make_shared<const StyleQuery>(*std::move(named));
   return styled->style_for(layers);
 }
 
@@ -292,7 +297,9 @@ Result<WindowRequest> window_in(const KeyValuePairs& pairs, const DocumentReques
   const auto background = parse_background(pairs["BGCOLOR"]);
   if (!background) return invalid("BGCOLOR", "a colour such as 0xFFFFFF", *pairs["BGCOLOR"]);
   std::vector<QueryPair> query = pairs.others;
-  if (!*is_transparent && !is_set(query, "background", {})) {
+  const bool has_background =
+      std::ranges::find(query, "background", &QueryPair::first) != query.end();
+  if (!*is_transparent && !has_background) {
     query.emplace_back("background", to_hex(*background));
   }
   auto style = style_of(std::move(query), *layers, pairs, request.styles);
@@ -392,13 +399,11 @@ Result<WmsRequest> legend_of(const KeyValuePairs& pairs, const DocumentRequest& 
   if (const auto& asked = pairs["STYLE"]; asked && !is_own_style(*asked)) {
     const auto style = request.styles.find(*asked);
     if (style == nullptr) return unknown_style("STYLE", *asked);
-    StyleQuery named;
-    for (const std::string& layer : *layers) {
-      const auto of_layer = style_for_layer(*style, layer, legend.query, *layers);
-      if (!of_layer) return of_layer.problem();
-      named = named.over(*of_layer, *layers);
-    }
-    legend.named = std::make_shared<const StyleQuery>(std::move(named));
+    std::vector<StyleOfLayer> for_layers;
+    for (const std::string& layer : *layers) for_layers.push_back({layer, style});
+    auto named = put_together(for_layers, legend.query, *layers);
+    if (!named) return std::move(named).problem();
+    legend.named = std::make_shared<const StyleQuery>(*std::move(named));
   }
   const int whole = std::clamp(static_cast<int>(std::lround(*scale)), 1, kMaxScale);
   legend.file = fmt::format("{}{}", fmt::join(*layers, ","),
