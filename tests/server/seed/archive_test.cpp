@@ -444,45 +444,49 @@ TEST(UpdateTest, DrawsWhatHasChangedAndGivesWhatSeedingAnewGives) {
   EXPECT_LT(update.progress().reused, drawn);
 }
 
-TEST(UpdateTest, OfUnchangedDataNothingIsDrawn) {
-  constexpr ZoomRange kZooms{4, 8};
-  TemporaryFolder folder;
-  testing::EditedLand land(7);
-  const auto dataset = land.load();
-  const auto plan = SeedPlan::make(seed_request(*dataset, kZooms, "fill-opacity=0.5"), dataset);
-  Seeding(*plan, kZooms).run(folder.file("old"));
-  join_into_archive(SeedLogs({folder.file("old")}), folder.file("old.pmtiles"), {});
-  const EarlierArchive earlier(folder.file("old.pmtiles"));
-  Seeding update(*plan, kZooms);
-  update.run(folder.file("update"), 1, {},
-             [&](const Digest& fingerprint) { return earlier.find(fingerprint); });
-  EXPECT_GT(update.progress().figures.drawn, 0u);
-  EXPECT_EQ(update.progress().figures.drawn, update.progress().reused);
-  EXPECT_EQ(update.progress().figures.alone, 0u);
+/// Data that do not change, and their archive.
+class UnchangedDataTest : public ::testing::Test {
+ protected:
+  static constexpr ZoomRange kZooms{4, 8};
+
+  UnchangedDataTest() {
+    Seeding(*plan_, kZooms).run(folder_.file("old"));
+    join_into_archive(SeedLogs({folder_.file("old")}), folder_.file("old.pmtiles"), {});
+  }
+
+  void update_from(const std::string& archive) {
+    const EarlierArchive earlier(archive);
+    update_.run(folder_.file("update"), 1, {},
+                [&](const Digest& fingerprint) { return earlier.find(fingerprint); });
+  }
+
+  TemporaryFolder folder_;
+  testing::EditedLand land_{7};
+  std::shared_ptr<const Dataset> dataset_ = land_.load();
+  Result<SeedPlan> plan_ =
+      SeedPlan::make(seed_request(*dataset_, kZooms, "fill-opacity=0.5"), dataset_);
+  Seeding update_{*plan_, kZooms};
+};
+
+TEST_F(UnchangedDataTest, NothingIsDrawnByAnUpdate) {
+  update_from(folder_.file("old.pmtiles"));
+  EXPECT_GT(update_.progress().figures.drawn, 0u);
+  EXPECT_EQ(update_.progress().figures.drawn, update_.progress().reused);
+  EXPECT_EQ(update_.progress().figures.alone, 0u);
 }
 
-TEST(UpdateTest, WhatIsDamagedIsDrawnAgain) {
-  constexpr ZoomRange kZooms{4, 8};
-  TemporaryFolder folder;
-  testing::EditedLand land(7);
-  const auto dataset = land.load();
-  const auto plan = SeedPlan::make(seed_request(*dataset, kZooms, "fill-opacity=0.5"), dataset);
-  Seeding(*plan, kZooms).run(folder.file("old"));
-  join_into_archive(SeedLogs({folder.file("old")}), folder.file("old.pmtiles"), {});
-  const std::string whole = read_file(folder.file("old.pmtiles"));
+TEST_F(UnchangedDataTest, DamagedTilesAreDrawnAgainByAnUpdate) {
+  const std::string whole = read_file(folder_.file("old.pmtiles"));
   std::string damaged = whole;
   constexpr std::size_t kPlaceOfTiles = 56;  // in the header: offset and length
   std::array<std::uint64_t, 2> tiles{};
   std::memcpy(tiles.data(), whole.data() + kPlaceOfTiles, sizeof tiles);
   for (std::size_t i = tiles[0] + 40; i < tiles[0] + tiles[1]; i += 40) damaged[i] ^= 1;
-  std::ofstream(folder.file("damaged.pmtiles"), std::ios::binary) << damaged;
-  const EarlierArchive earlier(folder.file("damaged.pmtiles"));
-  Seeding update(*plan, kZooms);
-  update.run(folder.file("update"), 1, {},
-             [&](const Digest& fingerprint) { return earlier.find(fingerprint); });
-  join_into_archive(SeedLogs({folder.file("update")}), folder.file("update.pmtiles"), {});
-  EXPECT_EQ(update.progress().reused, 0u);
-  EXPECT_TRUE(read_file(folder.file("update.pmtiles")) == whole);
+  std::ofstream(folder_.file("damaged.pmtiles"), std::ios::binary) << damaged;
+  update_from(folder_.file("damaged.pmtiles"));
+  join_into_archive(SeedLogs({folder_.file("update")}), folder_.file("update.pmtiles"), {});
+  EXPECT_EQ(update_.progress().reused, 0u);
+  EXPECT_TRUE(read_file(folder_.file("update.pmtiles")) == whole);
 }
 
 TEST(UpdateTest, WhatIsNoArchiveOfOursIsRefused) {
